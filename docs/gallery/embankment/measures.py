@@ -49,6 +49,33 @@ def share_of_strength(results, point):
     return float(np.sin(np.radians(columns[f"{point}_mobilised_friction_deg"][k])) / np.sin(np.radians(strength)))
 
 
+def yields_after(results, point, share=0.98):
+    """Time of rain until a point first mobilises this share of its strength [s]; nan where it never does."""
+    history, soil = results.history, results.scene["body"]["soil"]
+    strength = soil["friction_angle"] + soil["suction_friction_rate"] * history.columns[f"{point}_suction_Pa"]
+    mobilised = np.sin(np.radians(history.columns[f"{point}_mobilised_friction_deg"])) / np.sin(np.radians(strength))
+    since = np.asarray(history.time) - start_of_rain(results)
+    found = np.flatnonzero((since > 0) & (mobilised >= share))
+    return float(since[found[0]]) if len(found) else float("nan")
+
+
+def part_of_the_slide(results, point, part, slow=0.1, fast=0.8):
+    """Time between these shares of a point's largest speed, before it is that fast (`part` = "faster") or after (`part` = "slower") [s]."""
+    time, speed = np.asarray(results.history.time), results.history.columns[f"{point}_velocity_m_s"]
+    share = speed / np.nanmax(speed)
+    quick = np.flatnonzero(share > fast)
+    if part == "faster":
+        return float(time[quick[0]] - time[np.flatnonzero(share[:quick[0]] < slow)[-1]])
+    ends = quick[-1] + np.flatnonzero(share[quick[-1]:] < slow)
+    return float((time[ends[0]] if len(ends) else time[-1]) - time[quick[-1]])
+
+
+def largest_acceleration(results, point):
+    """Largest acceleration of a point in the rain [m/s2]."""
+    rain = np.asarray(results.history.time) > start_of_rain(results)
+    return float(np.nanmax(results.history.columns[f"{point}_acceleration_m_s2"][rain]))
+
+
 def share_that_yields(results):
     """Share of the particles that are at their strength when the rain begins."""
     at = min(results.snapshots, key=lambda each: abs(each.time - start_of_rain(results)))
@@ -91,12 +118,6 @@ def share_behind_the_front_that_is_dry(results):
     return float(np.mean([(snapshot.scalar("saturation")[0][passed] < DRY).mean() for snapshot, passed in while_it_slides(results)]))
 
 
-def share_behind_the_front_that_is_dry_at_the_end(results):
-    """The same share at the end."""
-    *_, (snapshot, passed) = while_it_slides(results)
-    return float((snapshot.scalar("saturation")[0][passed] < DRY).mean())
-
-
 def largest_pressure_while_it_slides(results):
     """Largest pore pressure of a particle in the snapshots of the slide [Pa]."""
     return float(max(snapshot.scalar("pore_pressure")[0].max() for snapshot, _ in while_it_slides(results)))
@@ -107,6 +128,6 @@ def hydrostatic_pressure_behind_the_front(results):
     return float(max(WEIGHT_OF_WATER * depth(snapshot)[snapshot.scalar("saturation")[0] > 0.99].max() for snapshot, _ in while_it_slides(results)))
 
 
-MEASURES = {function.__name__: function for function in (share_of_strength, share_that_yields, run_out_of_the_toe, flattening, displacement_at_mid_height,
-                                                         share_behind_the_front_that_is_dry, share_behind_the_front_that_is_dry_at_the_end,
+MEASURES = {function.__name__: function for function in (share_of_strength, yields_after, part_of_the_slide, largest_acceleration, share_that_yields,
+                                                         run_out_of_the_toe, flattening, displacement_at_mid_height, share_behind_the_front_that_is_dry,
                                                          largest_pressure_while_it_slides, hydrostatic_pressure_behind_the_front)}

@@ -1,26 +1,24 @@
-#!/usr/bin/python3
-"""Draws a run of the embankment as figures 29 to 34 of Alonso, Yerro & Pinyol (2015) show theirs:  figure.py DIR
-rain.png is figure 29, points.png figures 30, 31, 33 and 34, paths.png figure 32. study.py draws storage.png with draw_storage."""
+"""The pictures of this page, from runs of the scene: rain.png is figure 29 of the paper, points.png figures 30, 31, 33 and 34, paths.png figure 32."""
 
-import argparse
 import pathlib
 import shutil
-import sys
+import subprocess
+import tempfile
 
 import numpy as np
 
+import measures
+import talus_style as style
+from talus_paths import draw_stress_paths
+from talus_results import Results
+from talus_style import plt
+from talus_tiles import Frame, tiles
+from talus_units import at_time
+from talus_views import spacing_of
+
 HERE = pathlib.Path(__file__).resolve().parent
-sys.path[:0] = [str(HERE.parents[2] / "src/output/plots"), str(HERE)]
-
-import matplotlib.pyplot as plt  # noqa: E402
-import measures  # noqa: E402
-import talus_style as style  # noqa: E402
-from talus_paths import draw_stress_paths, strength_of  # noqa: E402
-from talus_results import Results  # noqa: E402
-from talus_views import spacing_of  # noqa: E402
-from talus_tiles import Frame, tiles  # noqa: E402
-from talus_units import at_time  # noqa: E402
-
+COARSE = ("--set", "mesh.size=1.4", "--set", "stage.rain.duration=60", "--no-pictures")  # of storage.png
+FILM = ("--set", "output.interval=0.25", "--set", "stage.rain.duration=32", "--no-pictures")  # until the first slide is at rest
 TIMES = (24, 30, 116)  # [s]
 RIGHT, TOP = 48, 16  # [m]
 POINTS = ("S1", "D1", "S2", "D2")
@@ -97,14 +95,21 @@ def draw_storage(mass, rate, path):
     style.save(figure, path)
 
 
-if __name__ == "__main__":
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("folder", metavar="DIR", type=pathlib.Path, help="results of a run")
-    results = Results(parser.parse_args().folder)
-    if not strength_of(results.folder / "pictures"):
-        sys.exit(f"figure.py: no strength of the soil beside the pictures of {results.folder}; `talus plot {results.folder}` writes it")
-    draw_section(results, HERE / "rain.png")
-    plt.rcParams["savefig.dpi"] = 120
-    draw_points(results, HERE / "points.png")
-    [(_, paths)] = draw_stress_paths(results, results.folder / "pictures")
-    shutil.copy(paths, HERE / "paths.png")
+def draw(talus, folder=None):
+    """Runs the scene, or reads the results in `folder`, and draws all; the film is of a run with more snapshots."""
+    with tempfile.TemporaryDirectory() as made:
+        if folder is None:
+            folder = f"{made}/scene"
+            subprocess.run([talus, "run", HERE / "scene.toml", "-o", folder, "--force"], check=True)
+        for storage in ("mass", "rate"):
+            subprocess.run([talus, "run", HERE / "scene.toml", "-o", f"{made}/{storage}", *COARSE, "--set", f"water.storage={storage}"], check=True)
+        draw_storage(Results(f"{made}/mass"), Results(f"{made}/rate"), HERE / "storage.png")
+        subprocess.run([talus, "run", HERE / "scene.toml", "-o", f"{made}/film", *FILM], check=True)
+        subprocess.run([talus, "plot", f"{made}/film", "--movie", "--fields", "displacement"], check=True)
+        shutil.copy(f"{made}/film/pictures/movie_displacement.gif", HERE / "slide.gif")
+        results = Results(folder)
+        draw_section(results, HERE / "rain.png")
+        plt.rcParams["savefig.dpi"] = 120
+        draw_points(results, HERE / "points.png")
+        [(_, paths)] = draw_stress_paths(results, results.folder / "pictures")
+        shutil.copy(paths, HERE / "paths.png")
