@@ -101,8 +101,8 @@ def outcome_of(folder, cell=None):
 
 
 class Runs:
-    """What a sweep ran: `rows` of the table in the order of the runs, `ended` are those that did not break off, `folders` of these, `title`, and whether
-    they are sections `in_plane` strain, whose volumes are those of a metre."""
+    """What a sweep ran: `rows` in the order of the runs, those of the `table`, those that `ended` without breaking off and their `folders`, `title`, and
+    whether they are sections `in_plane` strain, whose volumes are those of a metre."""
 
     def __init__(self, folder, design):
         self.folder, self.rows = folder, []
@@ -120,6 +120,7 @@ class Runs:
                 row |= {measure: measured(of, measure) for measure in self.measures}
                 row |= outcome_of(of, cell) if self.preset != "errors" else {}
             self.rows.append(row)
+        self.table = self.rows
         self.ended = [row for row in self.rows if not row["failure"]]
 
     def warnings(self):
@@ -725,11 +726,11 @@ def table_of_errors(rows, measure, width=None):
 
 def errors(runs, design):
     """Of `talus compare` with a measure."""
-    [measure], rows = runs.measures, runs.rows
-    truth = [row for row in rows if row["run"] == design.get("reference")]
+    [measure] = runs.measures
+    truth = [row for row in runs.rows if row["run"] == design.get("reference")]
     if any(row["failure"] for row in truth):
         sys.exit(f"talus: the run of --reference failed: {truth[0]['failure']}")
-    rows[:] = [row for row in rows if row["run"] != design.get("reference")]
+    rows = runs.table = [row for row in runs.rows if row not in truth]
     name_lines(rows)
     if "exact" in design:
         value, uncertainty, origin = design["exact"], 0.0, "given as exact"
@@ -747,7 +748,7 @@ def errors(runs, design):
         row["pareto"] = int(row in known and not any(other["processor_s"] < row["processor_s"] and other["error"] < row["error"] for other in known))
     reference = {"measure": measure, "value": value, "uncertainty": uncertainty, "origin": origin}
     lines = [f"{measure}; reference {value:.8g} +- {uncertainty:.2g} ({origin})", "", *table_of_errors(rows, measure), *map(folded, runs.said_of_measures())]
-    return lines, {"reference": reference}, {"compare": any(row[measure] is not None for row in rows) and (lambda path: draw_errors(rows, reference, path, runs.title))}, len(runs.ended) < len(rows) + len(truth)
+    return lines, {"reference": reference}, {"compare": any(row[measure] is not None for row in rows) and (lambda path: draw_errors(rows, reference, path, runs.title))}, len(runs.ended) < len(runs.rows)
 
 
 # ---- convergence ----
@@ -914,8 +915,8 @@ def main():
     lines, page, pictures, status = PRESETS[runs.preset](runs, design)
     with open(given.folder / "study.csv", "w", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")
-        names = list(dict.fromkeys(name for row in runs.rows for name in row))
-        writer.writerows([names, *([written(row.get(name)) for name in names] for row in runs.rows)])
+        names = list(dict.fromkeys(name for row in runs.table for name in row))
+        writer.writerows([names, *([written(row.get(name)) for name in names] for row in runs.table)])
     write_json(given.folder / "study.json", {"title": runs.title, "runs": len(runs.rows), "planned": design["planned"], "broke_off": len(runs.rows) - len(runs.ended),
                                              "warnings": runs.warnings()} | page)
     print("\n".join([*lines, *runs.said_of_troubles()]), flush=True)
