@@ -26,6 +26,7 @@ from talus_colours import Colours
 from talus_outcomes import FAILS, MOVES, STANDS, cell_size, finite, losses, outcome, write_json
 from talus_results import History, Results, read_events
 from talus_sections import BELOW, BESIDE, HEAD, LEFT, RIGHT, TITLE, WIDTH, Painter
+from talus_statistics import clopper_pearson, correlations, extrapolate, settles
 from talus_style import plt
 from talus_table import folded, lines_of
 from talus_units import readable_unit, with_unit, words
@@ -51,7 +52,7 @@ FOOT = 0.5  # room for the labels of the lowest axes of sections [inch]
 
 def written(value):
     """A value as tables and names of cases have it."""
-    return f"{value:.10g}" if isinstance(value, float) else " ".join(value) if isinstance(value, list) else "" if value is None else str(value)
+    return f"{value:.10g}" if isinstance(value, float) else "" if value is None else str(value)
 
 
 def asked_of(measure):
@@ -60,11 +61,18 @@ def asked_of(measure):
     return column, float(time) if time else None, measure.startswith("max:")
 
 
-def measured(folder, measure):
-    """A measure of the history of a run, linear between its rows. At a time after the end of a run that came to rest before, the last row counts; after
-    another end there is no value."""
+def history_of(folder):
+    """The history of a run; None where it has none."""
+    try:
+        return History(folder / "history.csv")
+    except OSError:
+        return None
+
+
+def measured(history, folder, measure):
+    """A measure of the history of the run in a folder, linear between its rows. At a time after the end of a run that came to rest before, the last row
+    counts; after another end there is no value."""
     column, time, largest = asked_of(measure)
-    history = History(folder / "history.csv")
     values, end = (history.columns | {"time_s": history.time, "step": history.step})[column], history.time[-1]
     if largest:
         return finite(np.nanmax(values)) if np.isfinite(values).any() else None
@@ -74,15 +82,11 @@ def measured(folder, measure):
     return finite(values[-1]) if rests else None
 
 
-def troubles(folder):
+def troubles(history, folder):
     """Columns for the soil that left the mesh by the end of a run, and for what it warned of."""
     told = list(dict.fromkeys(event["text"] for event in read_events(folder) if event["warning"]))
-    try:
-        columns = History(folder / "history.csv").columns
-        gone, left = (columns[name][-1] for name in ("escaped_mass_kg", "mass_kg"))
-    except (OSError, LookupError):  # it has no history
-        gone = left = math.nan
-    return {"escaped_mass_kg": finite(gone), "escaped_share": finite(gone / (gone + left)) if gone + left else None, "warning_count": len(told), "warnings": " | ".join(told)}
+    gone, left = (history.columns.get(name, [math.nan])[-1] if history else math.nan for name in ("escaped_mass_kg", "mass_kg"))
+    return {"escaped_mass_kg": finite(gone), "escaped_share": finite(gone / (gone + left)) if gone + left else None, "warning_count": len(told), "warnings": told}
 
 
 def outcome_of(folder, cell=None):
@@ -115,9 +119,10 @@ class Runs:
         cell = max((cell_size(Results(one)) for one in self.folders), default=None) if self.preset == "converge" else None
         for run in runs:
             of = folder / run["folder"]
-            row = run | dict.fromkeys(self.measures) | troubles(of)
+            history = history_of(of)
+            row = run | dict.fromkeys(self.measures) | troubles(history, of)
             if not run["failure"]:
-                row |= {measure: measured(of, measure) for measure in self.measures}
+                row |= {measure: measured(history, of, measure) for measure in self.measures}
                 row |= outcome_of(of, cell) if self.preset != "errors" else {}
             self.rows.append(row)
         self.table = self.rows
@@ -127,7 +132,7 @@ class Runs:
         """What runs warned of, one sentence for all that differ in their numbers alone."""
         found = {}
         for row in self.rows:
-            for sentence in filter(None, row["warnings"].split(" | ")):
+            for sentence in row["warnings"]:
                 found.setdefault(re.sub(r"-?[0-9][0-9.]*(e[-+]?[0-9]+)?", "#", sentence), (sentence, {}))[1][row["folder"]] = True
         return [{"warning": sentence, "runs": len(runs), "first_run": next(iter(runs))} for sentence, runs in found.values()]
 
@@ -201,32 +206,6 @@ def case_text(case, variables):
     return ", ".join(f"{words(name)} = {written(value)} {units[name]}".rstrip() for name, value in case.items())
 
 
-def binomial_tail(k, n, p):
-    """Probability of k or more successes in n trials of probability p."""
-    if k <= 0:
-        return 1.0
-    if p in (0.0, 1.0):
-        return p
-    terms = [math.lgamma(n + 1) - math.lgamma(i + 1) - math.lgamma(n - i + 1) + i * math.log(p) + (n - i) * math.log1p(-p) for i in range(k, n + 1)]
-    return min(1.0, math.fsum(map(math.exp, terms)))
-
-
-def solved(function, target, low=0.0, high=1.0):
-    """Where an increasing function has a value, by bisection."""
-    for _ in range(60):
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if function(middle) < target else (low, middle)
-    return 0.5 * (low + high)
-
-
-def clopper_pearson(k, n, confidence):
-    """Interval of a probability of which k of n independent trials had success (Clopper & Pearson 1934). It covers the probability at least
-    with the confidence; for a Latin hypercube, whose estimates scatter less, with more."""
-    rest = 0.5 * (1 - confidence)
-    low = 0.0 if k == 0 else solved(lambda p: binomial_tail(k, n, p), rest)
-    return low, 1.0 if k == n else solved(lambda p: binomial_tail(k + 1, n, p), 1 - rest)
-
-
 def state(row, criterion):
     """Whether a run meets a criterion: MET, NOT_MET, or UNKNOWN where the run broke off, where its factor is a bracket about the limit,
     where the criterion asks whether a slope fails that moved by less than a cell, or where the run has no value."""
@@ -290,22 +269,6 @@ def fits_of(cases, variables, shown):
             known = [float(row[name]) for row in rows if row.get(name) is not None]
             fits.append({"case": case} | (fit or {"outcome": name, "runs": len(known), "mean": float(np.mean(known)) if known else None, "r2": None, "bars": []}))
     return fits
-
-
-def far_from(found, asked, n):
-    """Is the correlation in a sample of n normal pairs far from that of their distribution? Its Fisher transform artanh r scatters about artanh of that with the
-    deviation 1 / sqrt(n - 3), nearly normally and alike for any correlation (Fisher 1921); two deviations, about 2 / sqrt(n) for weak correlations, are
-    passed by 5 % of all samples. Three pairs or fewer say nothing."""
-    return n > 3 and bool(abs(np.arctanh(found) - np.arctanh(asked)) * math.sqrt(n - 3) > 2)
-
-
-def correlations(names, asked, scores):
-    """Asked and found correlation of the normal scores of random variables: of the pairs that shall be correlated, and of others whose sample is by chance."""
-    samples = len(scores[0]) if scores else 0
-    found = np.corrcoef(scores) if samples > 1 and len(names) > 1 else ()
-    pairs = [{"between": [names[a], names[b]], "asked": asked[a][b], "sample": float(found[a][b]), "samples": samples, "far": far_from(found[a][b], asked[a][b], samples)}
-             for b in range(len(found)) for a in range(b)]
-    return [pair for pair in pairs if pair["asked"] or pair["far"]]
 
 
 def correlation_lines(pairs, width=None):
@@ -616,38 +579,6 @@ def outcomes(runs, _):
 
 # ---- comparisons: errors ----
 
-def order_of(sizes, values, bounds):
-    """The order p within bounds with which three values, from coarse to fine, go one way to a limit: value = limit + C size**p. None where there is none: their
-    changes grow, or shrink too little or too much."""
-    before, last = values[1] - values[0], values[2] - values[1]
-    def ratio(p):  # of the changes; it grows with p
-        return (sizes[0] ** p - sizes[1] ** p) / (sizes[1] ** p - sizes[2] ** p)
-    low, high = bounds
-    return solved(ratio, before / last, low, high) if last and ratio(low) <= before / last <= ratio(high) else None
-
-
-def extrapolate(refined):
-    """(value, uncertainty, origin) of the limit of values refined by a parameter that goes to zero, from the three finest: Richardson's extrapolation with
-    the order that they show, if they converge at one between 0.5 and 8, and if above 2.5 a fourth run, where there is one, lies on the same way (a high order
-    is otherwise a coincidence of the last two runs); otherwise the finest value, as uncertain as the last two refinements changed it. A refinement that
-    changed nothing, such as a tolerance where stability rules, is none."""
-    known = []  # from coarse to fine
-    for size, value in sorted(((size, value) for size, value in refined if None not in (size, value)), reverse=True):
-        if not known or known[-1][1] != value:
-            known.append((size, value))
-    sizes, values = ([pair[k] for pair in known[-4:]] for k in (0, 1))
-    changes = [after - before for before, after in zip(values, values[1:])]
-    if not changes:
-        return math.nan, math.inf, "too few runs"
-    order = None
-    if len(values) > 2 and 0 < sizes[-1] < sizes[-2] and abs(sizes[-2] / sizes[-1] - sizes[-3] / sizes[-2]) < 0.05 * sizes[-2] / sizes[-1]:
-        order = order_of(sizes[-3:], values[-3:], (0.5, 8))
-    if order and (order <= 2.5 or len(changes) < 3 or changes[0] / changes[1] >= 1):
-        rest = changes[-1] / ((sizes[-2] / sizes[-1]) ** order - 1)
-        return values[-1] + rest, abs(rest), f"extrapolated at the observed order {order:.2g}"
-    return values[-1], max(map(abs, changes[-2:])), "its finest run"
-
-
 def reference_of(rows, measure):
     """The limit of the line that converges best."""
     ends = [(line, *extrapolate([(row["value"], row[measure]) for row in rows if row["line"] == line and not row["failure"] and isinstance(row["value"], float)]))
@@ -761,7 +692,6 @@ REMEDY = {
 }
 # where soil softens, and its cells decide something
 SOFTENING = "Look at `talus check` for softening that is too brittle for these cells, and give the soil an averaging_length. "
-ORDERS = (0.5, 3.0)  # of convergence: errors of cells and steps have 1 or 2; beyond 3 two values are near by chance
 JUDGED = (("load_time_of_failure_s", "The load time at failure", "s"), ("largest_displacement_m", "The largest displacement", "m"),
           ("travel_distance_m", "The travel distance, from the rear of the slide to its front,", "m"), ("volume_of_slide_m3", "The volume of the slide", "m³"),
           ("depth_of_slide_m", "The depth of the slip surface", "m"))
@@ -774,29 +704,6 @@ def percent(difference, values):
     """A difference as a share of the finest run's value, "12 %"; round-off is 0."""
     share = 100 * difference / abs(values[-1]) if values[-1] else 0.0
     return f"{share:.2g} %" if share >= 0.01 else "0 %"
-
-
-def settles(sizes, values, within, least=0.0):
-    """What refinement does to a quantity, whose `sizes` and `values` go from coarse to fine. Allowed is a share `within` of the finest value, or `least`.
-    "missing": only some of the runs have it.
-    "equal": all values differ by no more than what is allowed.
-    "settles": the values go one way to a limit, and every three of them as if their error was a power of the size between the ORDERS; neither the last change
-    nor the rest up to that limit is more than what is allowed.
-    "swings": the values go to and fro.
-    "open": all else."""
-    if None in values:
-        return "missing"
-    allowed = max(within * abs(values[-1]), least)
-    if max(values) - min(values) <= allowed:
-        return "equal"
-    changes = [after - before for before, after in zip(values, values[1:])]
-    if min(changes) < 0 < max(changes):
-        return "swings"
-    orders = [order_of(sizes[k:k + 3], values[k:k + 3], ORDERS) for k in range(len(values) - 2)]
-    if None in orders:
-        return "open"
-    rest = abs(changes[-1]) / ((sizes[-2] / sizes[-1]) ** orders[-1] - 1)
-    return "settles" if max(abs(changes[-1]), rest) <= allowed else "open"
 
 
 def refined(row, by):
@@ -916,7 +823,8 @@ def main():
     with open(given.folder / "study.csv", "w", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")
         names = list(dict.fromkeys(name for row in runs.table for name in row))
-        writer.writerows([names, *([written(row.get(name)) for name in names] for row in runs.table)])
+        lists = {"overrides": " ", "warnings": " | "}
+        writer.writerows([names, *([lists[name].join(row[name]) if name in lists else written(row.get(name)) for name in names] for row in runs.table)])
     write_json(given.folder / "study.json", {"title": runs.title, "runs": len(runs.rows), "planned": design["planned"], "broke_off": len(runs.rows) - len(runs.ended),
                                              "warnings": runs.warnings()} | page)
     print("\n".join([*lines, *runs.said_of_troubles()]), flush=True)

@@ -10,7 +10,8 @@ import unittest
 import numpy as np
 
 sys.path.insert(0, sys.argv.pop(1))
-from talus_study import Runs, correlations, extrapolate, far_from, measured  # noqa: E402
+from talus_statistics import correlations, extrapolate, far_from  # noqa: E402
+from talus_study import Runs, history_of, measured  # noqa: E402
 
 
 class References(unittest.TestCase):
@@ -50,9 +51,9 @@ class Histories(unittest.TestCase):
     def test_have_measures(self):
         self.history()
         for measure, value in (("x_m", 2), ("x_m@0.5", 2), ("x_m@2", 2), ("x_m@1.5", 3), ("max:x_m", 4), ("time_s", 2), ("step", 9)):
-            self.assertEqual(measured(self.folder, measure), value, measure)
+            self.assertEqual(measured(history_of(self.folder), self.folder, measure), value, measure)
         with self.assertRaises(KeyError):
-            measured(self.folder, "y_m")
+            measured(history_of(self.folder), self.folder, "y_m")
 
     def test_end_with_their_last_row_where_a_run_came_to_rest(self):
         for stage, kind, value in (("slide", "rest", 2), ("slide", "slow", 2), ("slide", "equilibrium", 2), ("fall", "rest", None), ("slide", "duration_over", None),
@@ -60,14 +61,14 @@ class Histories(unittest.TestCase):
             self.history("slide")
             events = [{"kind": "remark", "stage": "slide"}, {"kind": kind, "stage": stage}]
             (self.folder / "events.jsonl").write_text("".join(json.dumps(event) + "\n" for event in events))
-            self.assertEqual(measured(self.folder, "x_m@30"), value, (stage, kind))
+            self.assertEqual(measured(history_of(self.folder), self.folder, "x_m@30"), value, (stage, kind))
 
 
 class Warnings(unittest.TestCase):
     def test_that_differ_in_numbers_and_their_signs_are_one(self):
         runs = Runs.__new__(Runs)
-        runs.rows = [{"folder": "run00000", "warnings": "moves by -1.5e-3 m at (4, -2) | moves by 20 m at (-4, 0.5) | moves by 20 s"}, {"folder": "run00001", "warnings": ""},
-                     {"folder": "run00002", "warnings": "moves by 3 s"}]
+        runs.rows = [{"folder": "run00000", "warnings": ["moves by -1.5e-3 m at (4, -2)", "moves by 20 m at (-4, 0.5)", "moves by 20 s"]}, {"folder": "run00001", "warnings": []},
+                     {"folder": "run00002", "warnings": ["moves by 3 s"]}]
         self.assertEqual(runs.warnings(), [{"warning": "moves by -1.5e-3 m at (4, -2)", "runs": 1, "first_run": "run00000"},
                                            {"warning": "moves by 20 s", "runs": 2, "first_run": "run00000"}])
 
