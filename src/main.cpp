@@ -21,7 +21,7 @@
 #include "base/temporary_folder.h"
 #include "base/version.h"
 #include "commands/commands.h"
-#include "commands/trials.h"
+#include "commands/sweep.h"
 #include "output/pictures.h"
 #include "output/script.h"
 #include "scene/words.h"

@@ -2,7 +2,7 @@
 """Does the discretisation decide? `convergence.py TALUS PAGE FOLDER [QUANTITY ...]` runs `talus converge` on the scene of a page of the gallery three
 times: with three cell sizes, three time steps, and three numbers of particles per cell. It writes convergence.csv into the folder of the page: one line
 for each refinement and quantity, with the values of the three runs from coarse to fine, how far they are apart in percent of the finest, and the verdict of
-the command. QUANTITY is a column of converge.csv, such as load_time_of_failure_s or crest_displacement_m; without any, all that the command judges.
+the command. QUANTITY is a column of study.csv, such as load_time_of_failure_s or crest_displacement_m; without any, all that the command judges.
 "cells=2,1,0.5" among the quantities gives other values than the command's own."""
 
 import csv
@@ -37,13 +37,14 @@ def main():
                                stdin=subprocess.DEVNULL)
         if ended.returncode not in (0, 1):  # 1: something decides
             sys.exit(f"talus converge --by {by} failed")
-        verdict = json.loads((out / "converge.json").read_text())
-        runs = verdict["runs"]
-        of = ", ".join(f"{run['value']:g}" for run in runs) + (f" {runs[0]['unit']}" if runs[0]["unit"] else "")
+        verdict = json.loads((out / "study.json").read_text())
+        with open(out / "study.csv", newline="") as file:
+            runs = list(csv.DictReader(file))
+        of = ", ".join(f"{float(run['value']):g}" for run in runs) + (f" {runs[0]['unit']}" if runs[0]["unit"] else "")
         common = {"refined": by, "values": of}
         if any(run["failure"] for run in runs):
             sys.exit("\n".join(verdict["verdict"]))
-        lines.append(common | {"quantity": "fails", **dict(zip(("coarse", "middle", "fine"), ("yes" if run["fails"] else "no" for run in runs)))})
+        lines.append(common | {"quantity": "fails", **dict(zip(("coarse", "middle", "fine"), ("yes" if run["fails"] == "True" else "no" for run in runs)))})
         for one in verdict["quantities"]:
             if wanted and one["quantity"] not in wanted:
                 continue

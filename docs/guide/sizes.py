@@ -16,12 +16,12 @@ SHOWN = ("The slope fails", "The load time", "The displacement of crest", "The t
 
 
 def converge(talus, folder, *options):
-    """The rows of converge.csv, and what is printed. Status 1 is the verdict that the cells decide something."""
+    """The rows of study.csv, and what is printed. Status 1 is the verdict that the cells decide something."""
     ended = subprocess.run([talus, "converge", HERE / "slope.toml", "-o", folder, "--force", *options], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, text=True)
     print(ended.stdout)
     if ended.returncode not in (0, 1):
         sys.exit("talus converge failed")
-    with open(folder / "converge.csv", newline="") as file:
+    with open(folder / "study.csv", newline="") as file:
         return list(csv.DictReader(file)), ended.stdout
 
 

@@ -1,17 +1,11 @@
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
-#include <filesystem>
 #include <map>
 
-#include "commands/commands.h"
-#include "commands/comparison.h"
 #include "commands/gallery.h"
-#include "commands/trials.h"
+#include "commands/sweep.h"
 #include "scene/quantity.h"
 #include "scene/reader.h"
-#include "scene/scene.h"
 #include "scene/words.h"
 #include "simulation/softening.h"
 #include "solvers/integrators.h"
@@ -19,13 +13,8 @@
 namespace talus {
 namespace {
 
-namespace fs = std::filesystem;
-
-enum class Refined { cells, steps, particles };
-
-struct ConvergeArguments : TrialOptions {
-  std::string scene;
-  Refined refined = Refined::cells;
+struct ConvergeArguments : SweepOptions {
+  std::string scene, by = "cells";
   std::vector<double> values;
   double within = 5;  ///< [%]
 };
@@ -37,49 +26,45 @@ struct Refinement {
   std::string unit;            ///< of the values
 };
 
-Refinement cells_of(const Scene &scene, const std::vector<double> &values) {
+Refinement cells_of(const Scene &scene) {
   const MeshSource &mesh = scene.mesh;
   if (mesh.section.empty())
     throw SceneError(
         "converge --by cells needs a scene with mesh.section, whose cells it can make anew; the mesh file " +
         mesh.file + " stays as it is: compare runs with mesh.halvings = 0 and 1, or with meshes of your own");
-  Refinement r{{{"mesh.size", mesh.size}}, values, "m"};
+  Refinement r{{{"mesh.size", mesh.size}}, {mesh.size * std::sqrt(2.), mesh.size, mesh.size / std::sqrt(2.)}, "m"};
   for (std::size_t i = 0; i < mesh.refine.size(); ++i)
     r.keys["mesh.refine." + std::to_string(i) + ".size"] = mesh.refine[i].size;
-  if (values.empty()) r.values = {mesh.size * std::sqrt(2.), mesh.size, mesh.size / std::sqrt(2.)};
   return r;
 }
 
-Refinement steps_of(const Scene &scene, const std::vector<double> &values) {
+/// The scene's own step is the largest, as larger ones may be unstable.
+Refinement steps_of(const Scene &scene) {
+  const auto refined = [](const char *key, double most, const char *unit) {
+    return Refinement{{{key, most}}, {most, most / std::sqrt(2.), most / 2}, unit};
+  };
   DeferredTable table = scene.integrator;
   const IntegratorSettings settings = read_integrator(table, fluids_move(scene.phases));
-  Refinement r{{}, values, ""};
-  double at_most = 0;
   if (const auto *controlled = std::get_if<ArkodeSettings>(&settings); controlled && controlled->step == 0)
-    r.keys["integrator.velocity_tolerance"] = at_most = controlled->velocity_tolerance, r.unit = "m/s";
-  else if (const StepRule rule = step_rule(settings); rule.fixed > 0)
-    r.keys["integrator.step"] = at_most = rule.fixed, r.unit = "s";
-  else
-    r.keys["integrator.fraction"] = at_most = rule.share;
-  // the scene's own step is the largest, as larger ones may be unstable
-  if (values.empty()) r.values = {at_most, at_most / std::sqrt(2.), at_most / 2};
-  return r;
+    return refined("integrator.velocity_tolerance", controlled->velocity_tolerance, "m/s");
+  const StepRule rule = step_rule(settings);
+  return rule.fixed > 0 ? refined("integrator.step", rule.fixed, "s") : refined("integrator.fraction", rule.share, "");
 }
 
-Refinement particles_of(const Scene &scene, const std::vector<double> &values) {
-  Refinement r{{}, values, ""};
+Refinement particles_of(const Scene &scene) {
+  Refinement r{{}, {3, 6, 12}, ""};
+  if (scene.dimension == 3) r.values = {4, 8, 20};
   for (const BodySource &body : scene.body) r.keys["body." + body.name + ".particles_per_cell"] = 1;
-  if (values.empty())
-    r.values = scene.dimension == 2 ? std::vector<double>{3., 6., 12.} : std::vector<double>{4., 8., 20.};
   return r;
 }
 
 Refinement refinement_of(const Scene &scene, const ConvergeArguments &arguments) {
-  Refinement r = arguments.refined == Refined::cells   ? cells_of(scene, arguments.values)
-                 : arguments.refined == Refined::steps ? steps_of(scene, arguments.values)
-                                                       : particles_of(scene, arguments.values);
+  Refinement r = arguments.by == "cells"   ? cells_of(scene)
+                 : arguments.by == "steps" ? steps_of(scene)
+                                           : particles_of(scene);
+  if (!arguments.values.empty()) r.values = arguments.values;
   std::sort(r.values.begin(), r.values.end());
-  if (arguments.refined != Refined::particles) std::reverse(r.values.begin(), r.values.end());
+  if (arguments.by != "particles") std::reverse(r.values.begin(), r.values.end());
   if (std::adjacent_find(r.values.begin(), r.values.end()) != r.values.end() || r.values.size() < 3)
     throw SceneError(
         "converge --values needs three different values or more: two cannot show whether a result settles");
@@ -92,42 +77,25 @@ double four_digits(double value) {
   return unit < 1 ? std::round(value / unit) / std::round(1 / unit) : std::round(value);
 }
 
-std::vector<Trial> trials_of(const Refinement &r, const std::string &directory) {
-  std::vector<Trial> trials;
+int converge(ConvergeArguments arguments) {
+  arguments.scene = find_scene(arguments.scene);
+  const Scene scene = read_wholly(arguments.scene, arguments.set, arguments.no_umat);
+  if (arguments.directory.empty()) arguments.directory = "results/converge_" + short_name(arguments.scene);
+  const Refinement r = refinement_of(scene, arguments);
+  Sweep sweep{.scene = arguments.scene, .set = arguments.set, .options = arguments};
+  const bool softening =
+      std::any_of(scene.body.begin(), scene.body.end(), [](const BodySource &b) { return softens(read_law(b.law)); });
+  sweep.shown = {
+      {"preset", "converge"}, {"by", arguments.by}, {"within", arguments.within / 100}, {"softening", softening}};
   const double own = r.keys.count("mesh.size") ? r.keys.at("mesh.size") : r.keys.begin()->second;
   for (const double value : r.values) {
-    Trial trial;
+    Trial trial{.columns = {{"value", four_digits(value)}, {"unit", r.unit}},
+                .folder = "run_" + shortest(four_digits(value))};  // more values go on with the same folder
     for (const auto &[key, start] : r.keys)
       trial.overrides.push_back(key + "=" + shortest(four_digits(start * value / own)));
-    trial.folder = (fs::path(directory) / ("run_" + shortest(four_digits(value)))).string();
-    trials.push_back(trial);
+    sweep.trials.push_back(trial);
   }
-  return trials;
-}
-
-int converge(ConvergeArguments arguments) {
-  require_one_rank("converge");
-  arguments.scene = find_scene(arguments.scene);
-  const Scene scene = read_scene(arguments.scene, arguments.set);
-  if (arguments.directory.empty()) arguments.directory = "results/converge_" + short_name(arguments.scene);
-  const Refinement refinement = refinement_of(scene, arguments);
-  std::vector<Trial> trials = trials_of(refinement, arguments.directory);
-  std::vector<Trial *> pointers;
-  for (Trial &trial : trials) pointers.push_back(&trial);
-  const TrialPlan plan{arguments.scene, arguments.set, arguments};
-  Trials runs(plan, pointers);
-  runs.run();
-  runs.write("runs.csv", {"value", "unit", "overrides"}, [&](std::size_t i) -> std::vector<std::string> {
-    return {shortest(four_digits(refinement.values[i])), refinement.unit, joined(trials[i].overrides)};
-  });
-  const char *refined[] = {"cells", "steps", "particles"};
-  std::vector<std::string> words{"--by", refined[static_cast<int>(arguments.refined)], "--within",
-                                 shortest(arguments.within / 100)};
-  if (std::any_of(scene.body.begin(), scene.body.end(), [](const BodySource &b) { return softens(read_law(b.law)); }))
-    words.push_back("--softening");
-  const int status = runs.tell("talus_converge.py", words);
-  std::fprintf(stderr, "tables%s are in %s\n", arguments.no_plot ? "" : " and picture", arguments.directory.c_str());
-  return status;
+  return perform(sweep);
 }
 
 }  // namespace
@@ -137,17 +105,12 @@ Action add_converge(CLI::App &app) {
   CLI::App *command = app.add_subcommand(
       "converge", "run a scene with several cell sizes: do the cells decide whether, when and how far it slides?");
   command->add_option("SCENE", arguments->scene, "scene file (.toml) or the name of a gallery scene")->required();
-  const std::map<std::string, Refined> names{
-      {"cells", Refined::cells}, {"steps", Refined::steps}, {"particles", Refined::particles}};
-  command->add_option("--by", arguments->refined, "what is refined: cells (mesh.size), steps, particles (per cell)")
-      ->transform(CLI::Validator(
-          [names](std::string &word) -> std::string {
-            std::vector<std::string> known;
-            for (const auto &[name, refined] : names) known.push_back(name);
-            const auto found = names.find(word);
-            if (found == names.end()) return "there is no " + word + " to refine; " + suggestion(word, known);
-            word = std::to_string(static_cast<int>(found->second));
-            return "";
+  command->add_option("--by", arguments->by, "what is refined: cells (mesh.size), steps, particles (per cell)")
+      ->check(CLI::Validator(
+          [](const std::string &word) {
+            const std::vector<std::string> known{"cells", "particles", "steps"};
+            return std::ranges::count(known, word) ? std::string()
+                                                   : "there is no " + word + " to refine; " + suggestion(word, known);
           },
           "cells|steps|particles"))
       ->default_str("cells");
@@ -163,8 +126,8 @@ Action add_converge(CLI::App &app) {
       ->add_option("--within", arguments->within,
                    "results that differ by no more than this share of the finest run's count as equal [%] (default 5)")
       ->check(CLI::Range(0.01, 100.));
-  add_trial_options(*command, *arguments, "override a key in all runs: key.path=value",
-                    "folder of runs, converge.csv, converge.json and converge.png (default results/converge_NAME)")
+  add_sweep_options(*command, *arguments, "override a key in all runs: key.path=value",
+                    "folder of runs, table and picture (default results/converge_NAME)")
       ->allow_extra_args(false);
   return [arguments] { return converge(*arguments); };
 }

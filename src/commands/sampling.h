@@ -81,22 +81,4 @@ inline std::vector<double> correlated(const std::vector<double> &u, const std::v
   return result;
 }
 
-/// Sample correlation of two variables; NaN where one of them does not vary.
-inline double correlation(const std::vector<double> &x, const std::vector<double> &y) {
-  const auto n = static_cast<double>(x.size());
-  double mx = 0, my = 0, xx = 0, yy = 0, xy = 0;
-  for (std::size_t i = 0; i < x.size(); ++i) mx += x[i] / n, my += y[i] / n;
-  for (std::size_t i = 0; i < x.size(); ++i)
-    xx += (x[i] - mx) * (x[i] - mx), yy += (y[i] - my) * (y[i] - my), xy += (x[i] - mx) * (y[i] - my);
-  return xy / std::sqrt(xx * yy);
-}
-
-/// Is the correlation `found` in a sample of n normal pairs far from that of their distribution? Its Fisher transform
-/// atanh(r) scatters about atanh(asked) with the deviation 1 / sqrt(n - 3), nearly normally and alike for any
-/// correlation (Fisher 1921); two deviations, about 2 / sqrt(n) for weak correlations, are passed by 5 % of all
-/// samples. Three pairs or fewer say nothing.
-inline bool far_from(double found, double asked, std::size_t n) {
-  return n > 3 && std::abs(std::atanh(found) - std::atanh(asked)) * std::sqrt(static_cast<double>(n) - 3) > 2;
-}
-
 }  // namespace talus

@@ -1,26 +1,17 @@
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
-#include <fstream>
-#include <map>
-#include <nlohmann/json.hpp>
 
-#include "base/rounded.h"
-#include "commands/commands.h"
-#include "commands/comparison.h"
 #include "commands/gallery.h"
 #include "commands/study_file.h"
-#include "commands/trials.h"
+#include "commands/sweep.h"
 #include "scene/words.h"
 
 namespace talus {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
-
-struct StudyArguments : TrialOptions {
+struct StudyArguments : SweepOptions {
   std::string file;
 };
 
@@ -38,17 +29,17 @@ struct Varying : StudyVariable {
   }
 };
 
+/// Columns of the table that no variable may have the name of.
+const std::vector<std::string> of_all_runs{"run",     "folder",          "overrides",     "processor_s",   "wall_s",
+                                           "failure", "escaped_mass_kg", "escaped_share", "warning_count", "warnings",
+                                           "state"};
+
 /// Six digits, so that tables read well; the run takes the same number.
 std::string in_digits(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.6g", value);
   return text;
 }
-
-/// A variant of the scene, with the value of each variable.
-struct Variant : Trial {
-  std::vector<std::string> values;
-};
 
 class Study {
  public:
@@ -65,23 +56,19 @@ class Study {
   }
 
   int perform() {
-    make_variants();
+    make_trials();
     check_runs_before();
     check_extremes();
-    TrialPlan plan{scene_, file_.set, options_};
-    for (const std::string &measure : file_.measures) plan.measures.push_back(parse_measure(measure));
-    plan.refusal_ends = false;
-    if (file_.runs == StudyRuns::factor_of_safety) plan.command = {"solve", "--factor-of-safety"};
-    std::vector<Trial *> pointers;
-    for (Variant &variant : variants_) pointers.push_back(&variant);
-    Trials trials(plan, pointers);
-    try {
-      trials.run();
-    } catch (const Interrupted &) {
-      if (std::any_of(pointers.begin(), pointers.end(), [](const Trial *t) { return t->done; })) conclude(trials);
-      throw;
-    }
-    return conclude(trials);
+    return talus::perform({.scene = scene_,
+                           .set = file_.set,
+                           .options = options_,
+                           .measures = file_.measures,
+                           .shown = design(),
+                           .command = file_.runs == StudyRuns::factor_of_safety
+                                          ? std::vector<std::string>{"solve", "--factor-of-safety"}
+                                          : std::vector<std::string>{"run"},
+                           .refusal_ends = false,
+                           .trials = trials_});
   }
 
  private:
@@ -94,7 +81,6 @@ class Study {
       root_.complain("scene", std::string("cannot be found: ") + error.what());
     }
     base_ = read_scene(scene_, file_.set);
-    for (const auto &point : base_.output.point) points_.push_back(point.name);
   }
 
   void read_variables() {
@@ -103,7 +89,7 @@ class Study {
     for (const StudyVariable &one : file_.variable) {
       Varying v{one, {}, {}};
       const std::string path = "variable." + v.name;
-      if (v.name == "run" || v.name == "state" || std::ranges::count(columns_of_trials, v.name))
+      if (std::ranges::count(of_all_runs, v.name))
         root_.complain(path, "must have another name: study.csv has a column of this name");
       if (v.key.empty())
         root_.complain(path, "needs key, the key of the scene that varies, such as body.clay.cohesion");
@@ -115,18 +101,14 @@ class Study {
         if (const std::string wrong = mixed_units(v.listed); !wrong.empty()) root_.complain(path + ".choices", wrong);
       }
       if (!v.unit.empty() && !v.numeric()) root_.complain(path + ".unit", "belongs to numbers; write units in choices");
-      if (!v.unit.empty()) check_unit(path + ".unit", v.unit);
+      if (!v.unit.empty()) try {
+          parse_quantity("1 " + v.unit);
+        } catch (const std::invalid_argument &error) {
+          root_.complain(path + ".unit", std::string("must be a unit such as kPa, deg or m: ") + error.what());
+        }
       variables_.push_back(v);
       keys.insert(keys.end(), v.key.begin(), v.key.end());
       if (const std::string wrong = same_keys(base_, keys); !wrong.empty()) root_.complain(path + ".key", wrong);
-    }
-  }
-
-  void check_unit(const std::string &path, const std::string &unit) const {
-    try {
-      parse_quantity("1 " + unit);
-    } catch (const std::invalid_argument &error) {
-      root_.complain(path, std::string("must be a unit such as kPa, deg or m: ") + error.what());
     }
   }
 
@@ -181,8 +163,8 @@ class Study {
     }
     names.insert(names.end(), {"fails", "load_time_of_failure_s", "largest_displacement_m", "travel_distance_m",
                                "volume_of_slide_m3", "depth_of_slide_m"});
-    for (const std::string &point : points_)
-      names.insert(names.end(), {point + "_displacement_m", point + "_largest_speed_m_s"});
+    for (const auto &point : base_.output.point)
+      names.insert(names.end(), {point.name + "_displacement_m", point.name + "_largest_speed_m_s"});
     return names;
   }
 
@@ -206,8 +188,8 @@ class Study {
                            "known are " + join(known));
   }
 
-  /// Sample after sample, and in each the whole grid, so that more samples only add variants at the end.
-  void make_variants() {
+  /// Sample after sample, and in each the whole grid, so that more samples only add trials at the end.
+  void make_trials() {
     Series grid;
     for (const Varying &v : variables_)
       if (!v.random()) grid.lists.emplace_back(v.name, v.listed);
@@ -216,27 +198,25 @@ class Study {
     for (std::size_t i = 0; i < triangle_.size(); ++i)
       coordinates.push_back(nested_hypercube(static_cast<std::size_t>(file_.samples),
                                              static_cast<std::uint64_t>(file_.seed), static_cast<std::uint64_t>(i)));
-    const std::size_t samples = random() ? static_cast<std::size_t>(file_.samples) : 1;
-    for (std::size_t s = 0; s < samples; ++s) {
+    scores_.resize(triangle_.size());
+    for (std::size_t s = 0; s < (random() ? static_cast<std::size_t>(file_.samples) : 1); ++s) {
       std::vector<double> u;
       for (const auto &of_variable : coordinates) u.push_back(of_variable[s]);
       u = correlated(u, triangle_);
-      scores_.resize(u.size());
       for (std::size_t i = 0; i < u.size(); ++i) scores_[i].push_back(normal_quantile(u[i]));
-      for (const auto &cell : cells) add_variant(u, cell);
+      for (const auto &cell : cells) add_trial(u, cell);
     }
   }
 
-  void add_variant(const std::vector<double> &u, const std::vector<std::string> &cell) {
-    Variant variant;
+  void add_trial(const std::vector<double> &u, const std::vector<std::string> &cell) {
+    Trial trial;
     std::size_t sampled = 0, listed = 0;
     for (const Varying &v : variables_) {
-      variant.values.push_back(v.random() ? value_of(v, u[sampled++])
-                                          : cell[listed++].substr(v.name.size() + 1));  // behind NAME=
-      for (const std::string &one : v.overrides(variant.values.back())) variant.overrides.push_back(one);
+      const std::string value = v.random() ? value_of(v, u[sampled++]) : cell[listed++].substr(v.name.size() + 1);
+      trial.columns[v.name] = v.numeric() ? Json(number_of(value)) : Json(value);
+      for (const std::string &one : v.overrides(value)) trial.overrides.push_back(one);
     }
-    variant.folder = folder_of(variants_.size());
-    variants_.push_back(variant);
+    trials_.push_back(trial);
   }
 
   static std::string value_of(const Varying &v, double u) {
@@ -251,14 +231,14 @@ class Study {
   /// The scene and its laws must take the smallest and largest value of each variable: what it says of them is said of
   /// the variable.
   void check_extremes() const {
-    for (std::size_t i = 0; i < variables_.size(); ++i) {
-      const auto less = [&](const Variant &a, const Variant &b) {
-        return number_of(a.values[i]) < number_of(b.values[i]);
-      };
-      const auto [low, high] = std::minmax_element(variants_.begin(), variants_.end(), less);
-      std::vector<std::string> values{low->values[i], high->values[i]};
-      if (!variables_[i].random()) values = variables_[i].listed;
-      for (const std::string &value : values) try_value(variables_[i], value);
+    for (const Varying &v : variables_) {
+      std::vector<std::string> values = v.listed;
+      if (v.random()) {
+        const auto [low, high] =
+            std::ranges::minmax(trials_, {}, [&](const Trial &trial) { return trial.columns[v.name].get<double>(); });
+        values = {in_digits(low.columns[v.name]), in_digits(high.columns[v.name])};
+      }
+      for (const std::string &value : values) try_value(v, value);
     }
   }
 
@@ -278,75 +258,24 @@ class Study {
   /// Fewer samples than were run before would cut the tables of the study.
   void check_runs_before() const {
     if (options_.force) return;
-    std::size_t before = variants_.size();
-    while (fs::exists(folder_of(before) + "/trial")) ++before;
-    if (before > variants_.size())
+    std::size_t before = trials_.size();
+    while (fs::exists(fs::path(options_.directory) / run_name(before) / "trial")) ++before;
+    if (before > trials_.size())
       throw SceneError(options_.directory + " holds " + std::to_string(before) + " runs of this study, and " +
-                       std::to_string(variants_.size()) +
+                       std::to_string(trials_.size()) +
                        " are asked for: the tables would lose the others. Ask for as many as there are, choose another "
                        "folder with -o, or give --force to leave them out of the tables; their folders stay");
   }
 
-  std::string folder_of(std::size_t run) const {
-    char name[32];
-    std::snprintf(name, sizeof name, "run%05zu", run);
-    return (fs::path(options_.directory) / name).string();
-  }
-
-  int conclude(const Trials &trials) {
-    std::vector<std::string> columns{"run"};
-    for (const Varying &v : variables_) columns.push_back(v.name);
-    columns.insert(columns.end(), file_.measures.begin(), file_.measures.end());
-    trials.write("runs.csv", columns, [&](std::size_t i) {
-      const Variant &variant = variants_[i];
-      std::vector<std::string> cells{std::to_string(i)};
-      cells.insert(cells.end(), variant.values.begin(), variant.values.end());
-      for (const std::string &measure : file_.measures) {
-        const double value =
-            variant.failed ? NAN : talus::value_of(variant.folder + "/history.csv", parse_measure(measure));
-        cells.push_back(std::isfinite(value) ? rounded(value, 6) : "");
-      }
-      return cells;
-    });
-    write_design();
-    const int status = trials.tell("talus_study.py");
-    std::fprintf(stderr, "study.csv, study.json%s are in %s\n", options_.no_plot ? "" : " and pictures",
-                 options_.directory.c_str());
-    return status;
-  }
-
-  /// Asked and found correlation of the random variables: of the pairs that shall be correlated, and of others whose
-  /// sample is by chance. As JSON.
-  Json correlations() const {
-    struct Pair {
-      std::size_t a, b;
-    };
-    const std::vector<std::string> names = random_names();
-    const std::size_t samples = scores_.empty() ? 0 : scores_.front().size();
-    const auto found = [&](const Pair &p) { return correlation(scores_[p.a], scores_[p.b]); };
-    const auto far = [&](const Pair &p) { return far_from(found(p), asked_[p.a][p.b], samples); };
-    std::vector<Pair> pairs;
-    for (std::size_t b = 0; samples > 1 && b < names.size(); ++b)
-      for (std::size_t a = 0; a < b; ++a)
-        if (asked_[a][b] != 0 || far({a, b})) pairs.push_back({a, b});
-    Json all = Json::array();
-    for (const Pair &p : pairs)
-      all.push_back({{"between", std::vector{names[p.a], names[p.b]}},
-                     {"asked", asked_[p.a][p.b]},
-                     {"sample", found(p)},
-                     {"samples", samples},
-                     {"far", far(p)}});
-    return all;
-  }
-
   /// What the script needs to know of the study.
-  void write_design() const {
-    Json design{{"title", file_.title}, {"confidence", file_.confidence}, {"planned", variants_.size()}};
+  Json design() const {
+    Json design{{"preset", "study"}, {"title", file_.title}, {"confidence", file_.confidence}};
     design["variables"] = Json::array(), design["criteria"] = Json::array();
     for (const Varying &v : variables_)
       design["variables"].push_back({{"name", v.name},
-                                     {"key", join(v.key)},
-                                     {"unit", v.numeric() ? value_at(v.key.front(), "1 " + v.unit).unit : ""},
+                                     {"unit", !v.numeric()      ? ""
+                                              : !v.unit.empty() ? v.unit
+                                                                : unit_of_key(v.key.front())},
                                      {"random", v.random()},
                                      {"numeric", v.numeric()}});
     for (const StudyCriterion &c : file_.criterion) {
@@ -356,26 +285,20 @@ class Study {
                                     {"side", below ? "below" : "above"},
                                     {"limit", below ? c.below : c.above}});
     }
-    design["correlations"] = correlations(), design["measures"] = file_.measures;
-    std::ofstream(options_.directory + "/design.json") << design.dump(1) << "\n";
+    design["asked"] = asked_, design["scores"] = scores_;
+    return design;
   }
 
   TableReader root_;
-  TrialOptions options_;
+  SweepOptions options_;
   StudyFile file_;
   std::string scene_;
   Scene base_;  ///< without variables
-  std::vector<std::string> points_;
   std::vector<Varying> variables_;
   std::vector<std::vector<double>> asked_, triangle_;  ///< correlation of the random variables, and its triangle
   std::vector<std::vector<double>> scores_;            ///< normal scores of each random variable in all samples
-  std::vector<Variant> variants_;
+  std::vector<Trial> trials_;
 };
-
-int study(const StudyArguments &arguments) {
-  require_one_rank("study");
-  return Study(arguments).perform();
-}
 
 }  // namespace
 
@@ -385,9 +308,9 @@ Action add_study(CLI::App &app) {
       "study",
       "run a scene over lists, grids or samples of distributions: outcomes, sensitivities, probability of failure");
   command->add_option("FILE", arguments->file, "study file (.toml), see docs/reference/study.md")->required();
-  add_trial_options(*command, *arguments, "override a key of the study: samples=400",
-                    "folder of runs, tables and pictures (default results/study_NAME)");
-  return [arguments] { return study(*arguments); };
+  add_sweep_options(*command, *arguments, "override a key of the study: samples=400",
+                    "folder of runs, table and pictures (default results/study_NAME)");
+  return [arguments] { return Study(*arguments).perform(); };
 }
 
 }  // namespace talus

@@ -16,19 +16,10 @@ namespace talus {
 
 inline constexpr Range any_number{-1e300, 1e300};
 
-/// Bounds of a distribution; the distribution is cut off there and scaled to a total probability of 1.
-struct Truncation {
+/// Mean and standard deviation of the variable, before the distribution is cut off at its bounds and scaled to a total
+/// probability of 1.
+struct Moments {
   double low = any_number.low, high = any_number.high;
-  template <class Visitor>
-  void fields(Visitor &&v) {
-    v.number("low", low, one, any_number, "the distribution is cut off below this value");
-    v.number("high", high, one, any_number, "the distribution is cut off above this value");
-  }
-  std::string problem() const { return low < high ? "" : "low must be less than high = " + shortest(high); }
-};
-
-/// Mean and standard deviation of the variable, before it is cut off.
-struct Moments : Truncation {
   double mean = required, standard_deviation = 0, coefficient_of_variation = 0;
   template <class Visitor>
   void fields(Visitor &&v) {
@@ -36,52 +27,51 @@ struct Moments : Truncation {
     v.number("standard_deviation", standard_deviation, one, Range{0, 1e300},
              "standard deviation, in the unit of the variable; or coefficient_of_variation");
     v.number("coefficient_of_variation", coefficient_of_variation, one, Range{0, 100}, "standard deviation over mean");
-    Truncation::fields(v);
+    v.number("low", low, one, any_number, "the distribution is cut off below this value");
+    v.number("high", high, one, any_number, "the distribution is cut off above this value");
   }
   double deviation() const {
     return standard_deviation > 0 ? standard_deviation : coefficient_of_variation * std::abs(mean);
   }
+};
+
+/// A distribution of which a function, `score`, is standard normal.
+template <class Kind>
+struct OfNormalScore : Moments {
+  double share(double x) const { return normal_distribution(kind().score(x)); }
+  double quantile(double u) const {
+    const double below = share(low);
+    return std::clamp(kind().at(normal_quantile(below + u * (share(high) - below))), low, high);
+  }
   std::string problem() const {
+    if (const std::string wrong = kind().wrong_mean(); !wrong.empty()) return wrong;
     if ((standard_deviation > 0) == (coefficient_of_variation > 0))
       return "needs one of standard_deviation and coefficient_of_variation, above 0";
     if (!(deviation() > 0)) return "mean must differ from 0 where coefficient_of_variation gives the deviation";
-    return Truncation::problem();
-  }
-};
-
-struct Normal : Moments {
-  static constexpr const char *name = "normal";
-  double quantile(double u) const {
-    const auto share = [&](double x) { return normal_distribution((x - mean) / deviation()); };
-    const double below = share(low);
-    return std::clamp(mean + deviation() * normal_quantile(below + u * (share(high) - below)), low, high);
-  }
-  std::string problem() const {
-    if (const std::string wrong = Moments::problem(); !wrong.empty()) return wrong;
-    const double kept =
-        normal_distribution((high - mean) / deviation()) - normal_distribution((low - mean) / deviation());
-    return kept > 1e-6 ? "" : "low and high leave almost nothing of the distribution: take others, or a uniform one";
-  }
-};
-
-/// The logarithm is normal; mean and deviation are those of the variable itself.
-struct Lognormal : Moments {
-  static constexpr const char *name = "lognormal";
-  double spread() const { return std::sqrt(std::log1p(std::pow(deviation() / mean, 2))); }
-  double share(double x) const {
-    return x <= 0 ? 0 : normal_distribution((std::log(x / mean) + 0.5 * spread() * spread()) / spread());
-  }
-  double quantile(double u) const {
-    const double below = share(low), score = normal_quantile(below + u * (share(high) - below));
-    return std::clamp(mean * std::exp(spread() * (score - 0.5 * spread())), low, high);
-  }
-  std::string problem() const {
-    if (!(mean > 0)) return "mean must be above 0 for a lognormal distribution";
-    if (const std::string wrong = Moments::problem(); !wrong.empty()) return wrong;
+    if (!(low < high)) return "low must be less than high = " + shortest(high);
     return share(high) - share(low) > 1e-6
                ? ""
                : "low and high leave almost nothing of the distribution: take others, or a uniform one";
   }
+
+ private:
+  const Kind &kind() const { return static_cast<const Kind &>(*this); }
+};
+
+struct Normal : OfNormalScore<Normal> {
+  static constexpr const char *name = "normal";
+  double score(double x) const { return (x - mean) / deviation(); }
+  double at(double score) const { return mean + deviation() * score; }
+  std::string wrong_mean() const { return ""; }
+};
+
+/// The logarithm is normal; mean and deviation are those of the variable itself.
+struct Lognormal : OfNormalScore<Lognormal> {
+  static constexpr const char *name = "lognormal";
+  double spread() const { return std::sqrt(std::log1p(std::pow(deviation() / mean, 2))); }
+  double score(double x) const { return x <= 0 ? -INFINITY : std::log(x / mean) / spread() + 0.5 * spread(); }
+  double at(double score) const { return mean * std::exp(spread() * (score - 0.5 * spread())); }
+  std::string wrong_mean() const { return mean > 0 ? "" : "mean must be above 0 for a lognormal distribution"; }
 };
 
 struct Uniform {

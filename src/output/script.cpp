@@ -1,15 +1,13 @@
 #include "output/script.h"
 
-#include <spawn.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
 #include <stdexcept>
 
-#include "base/child_environment.h"
+#include "base/start_program.h"
 #include "base/version.h"
 
 namespace talus {
@@ -24,16 +22,7 @@ std::string script_folder() {
 int run_script(const std::string &name, const std::vector<std::string> &arguments) {
   std::vector<std::string> words{TALUS_PYTHON, "-B", script_folder() + "/" + name};  // -B: no caches among the sources
   words.insert(words.end(), arguments.begin(), arguments.end());
-  std::vector<char *> pointers;
-  for (auto &word : words) pointers.push_back(word.data());
-  pointers.push_back(nullptr);
-
-  pid_t child;
-  auto environment = environment_without_mpi();
-  std::string drawn_by = std::string("TALUS_PROGRAM=") + program;
-  environment.insert(environment.begin(), drawn_by.data());
-  if (const int error = posix_spawn(&child, TALUS_PYTHON, nullptr, nullptr, pointers.data(), environment.data()))
-    throw std::runtime_error(std::string("cannot start " TALUS_PYTHON ": ") + std::strerror(error));
+  const pid_t child = start_program(TALUS_PYTHON, words, std::string("TALUS_PROGRAM=") + program);
   int status = 0;
   while (waitpid(child, &status, 0) < 0)
     if (errno != EINTR) throw std::runtime_error(std::strerror(errno));

@@ -303,7 +303,7 @@ def figure(_):
             rows = [r for r in read(name) if not r["failure"] and r["series"] != "forward-euler" and 0 < float(r["error"]) < 0.1]
             for k, kind in enumerate(dict.fromkeys(r["series"] for r in rows)):
                 of = [r for r in rows if r["series"] == kind]
-                axes.plot([1e6 * float(r["parameter"]) for r in of], [float(r["error"]) for r in of], "o-", color=LINES[k % len(LINES)], markersize=4, linewidth=1, label=kind)
+                axes.plot([1e6 * float(r["value"]) for r in of], [float(r["error"]) for r in of], "o-", color=LINES[k % len(LINES)], markersize=4, linewidth=1, label=kind)
             axes.set(title=title, xscale="log", yscale="log", xlabel="step [µs]")
             axes.set_xticks([60, 120, 240, 480], [60, 120, 240, 480])
             axes.set_xticks([], minor=True)

@@ -6,6 +6,8 @@
 TALUS is the program (build/release/bin/talus). Each study writes its CSVs beside this file (NAME.csv, NAME_reference.csv); `figure` draws NAME.png
 from them. Runs are kept in results/integrators, so that a study goes on where it stopped; remove it to measure times anew.
 """
+import csv
+import json
 import subprocess
 import sys
 from pathlib import Path
@@ -13,6 +15,9 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[2]
 sys.path.insert(0, str(ROOT / "src/output/plots"))
+
+from talus_results import Table  # noqa: E402
+
 RUNS = ROOT / "results/integrators"
 
 FRACTIONS = "euler: integrator.fraction=0.8,0.4,0.2,0.1,0.05,0.025"
@@ -55,16 +60,22 @@ def study(talus, name):
     words = [talus, "compare", ROOT / scene, "--measure", measure, "-o", RUNS / name, "--no-plot", "--force", *sum((["--series", s] for s in series), []),
              *(["--reference", REFERENCES[name]] if name in REFERENCES else [])]
     subprocess.run(words + (["--set", *overrides] if overrides else []), check=False)  # a failed run is a line of the table
-    for file, kept in (("compare", name), ("reference", f"{name}_reference")):
-        text = (RUNS / name / f"{file}.csv").read_text()
-        (HERE / f"{kept}.csv").write_text(text.replace(f"{ROOT}/", ""))  # what runs say of themselves names folders
+    (HERE / f"{name}.csv").write_text((RUNS / name / "study.csv").read_text().replace(f"{ROOT}/", ""))  # what runs say of themselves names folders
+    reference = json.loads((RUNS / name / "study.json").read_text())["reference"]
+    with open(HERE / f"{name}_reference.csv", "w", newline="") as file:
+        csv.writer(file).writerows([reference.keys(), reference.values()])
+
+
+def rows_of(path):
+    columns = Table(path).columns
+    return [dict(zip(columns, row)) for row in zip(*columns.values())]
 
 
 def figure():
-    from talus_compare import draw, read
+    from talus_study import draw_errors
     for name in STUDIES.keys() - {"frozen", "plastic", "crossing"}:  # runs.py draws these side by side
         if (HERE / f"{name}.csv").exists():
-            draw(read(HERE / f"{name}.csv"), read(HERE / f"{name}_reference.csv")[0], HERE / f"{name}.png")
+            draw_errors(rows_of(HERE / f"{name}.csv"), rows_of(HERE / f"{name}_reference.csv")[0], HERE / f"{name}.png")
 
 
 if __name__ == "__main__":

@@ -398,7 +398,7 @@ class Line:
 
 
 class Table:
-    """A table of outcomes that `talus study`, `compare` or `converge` wrote (study.csv, compare.csv, ...): columns by their names, as numbers
+    """A table of outcomes that `talus study`, `compare` or `converge` wrote (study.csv): columns by their names, as numbers
     [rows] where all of its entries are numbers or empty (then NaN), otherwise as text [rows]."""
 
     @of_file

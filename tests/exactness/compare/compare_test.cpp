@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "csv_table.h"
 #include "scene.h"
@@ -25,6 +26,10 @@ class Compare : public testing::Test {
     all.insert(all.end(), more.begin(), more.end());
     return talus_words(all);
   }
+  nlohmann::json reference() const {
+    std::ifstream file(folder_ / "out/study.json");
+    return nlohmann::json::parse(file).at("reference");
+  }
   Ending compare(const std::vector<std::string> &more) const { return Program(folder_, words(more)).end(); }
   const Folder folder_;
 };
@@ -40,15 +45,15 @@ TEST_F(Compare, VariesWhatASceneSays) {
                                  "slice: dimension=3; output.point.corner.position=[1, 0.5, 0.1]; "
                                  "boundary.front.kind=roller; boundary.back.kind=roller"});
   ASSERT_EQ(ending.status, 0) << ending.output;
-  const auto rows = csv_table(folder_ / "out/compare.csv");
+  const auto rows = csv_table(folder_ / "out/study.csv");
   ASSERT_EQ(rows.size(), 14u);
   for (const Row &row : rows) {
-    EXPECT_NEAR(number(row, "value"), 1, 0.1)
+    EXPECT_NEAR(number(row, "corner_x_m"), 1, 0.1)
         << row.at("overrides");  // the particle nearest to the corner, cells of 0.25 m
     for (const char *key : {"processor_s", "wall_s", "steps"}) EXPECT_GT(number(row, key), 0) << key;
     EXPECT_EQ(row.at("failure"), "");
   }
-  EXPECT_EQ(rows[0].at("parameter"), "0.8");
+  EXPECT_EQ(rows[0].at("value"), "0.8");
   EXPECT_EQ(rows[9].at("overrides"), "body.sand.particles_per_cell=6 mesh.size=0.17");
   EXPECT_GT(number(rows[3], "evaluations"), 3.9 * number(rows[3], "steps")) << "order 3 has four stages";
   // nothing on the front is beaten in time and error at once, and something is on it
@@ -65,8 +70,7 @@ TEST_F(Compare, VariesWhatASceneSays) {
   EXPECT_TRUE(ending.says("14 of 14: ") && ending.says(" s left")) << ending.output;
   // without a reference the series that converges best is taken to its limit, or its finest run, with what is uncertain
   // about it
-  const Row reference = csv_table(folder_ / "out/reference.csv").at(0);
-  EXPECT_GT(number(reference, "uncertainty"), 0);
+  EXPECT_GT(reference().at("uncertainty").get<double>(), 0);
 }
 
 TEST_F(Compare, GoesOnWhereItStopped) {
@@ -74,18 +78,18 @@ TEST_F(Compare, GoesOnWhereItStopped) {
                                         "euler: integrator.fraction=0.8,0.4,0.1,0.05"};
   {
     Program program(folder_, words(matrix));
-    ASSERT_TRUE(program.wait_for(folder_ / "out/run001/trial"));
+    ASSERT_TRUE(program.wait_for(folder_ / "out/run00001/trial"));
     program.signal(SIGINT);
     const Ending ending = program.end();
     EXPECT_EQ(ending.status, 1) << ending.output;
     EXPECT_TRUE(ending.says("the same command continues with the missing runs")) << ending.output;
   }
-  const auto written = std::filesystem::last_write_time(folder_ / "out/run001/history.csv");
+  const auto written = std::filesystem::last_write_time(folder_ / "out/run00001/history.csv");
   const Ending ending = compare(matrix);
   EXPECT_EQ(ending.status, 0) << ending.output;
   EXPECT_TRUE(ending.says(" of 4 runs were completed before")) << ending.output;
-  EXPECT_EQ(std::filesystem::last_write_time(folder_ / "out/run001/history.csv"), written);
-  EXPECT_EQ(csv_table(folder_ / "out/compare.csv").size(), 4u);
+  EXPECT_EQ(std::filesystem::last_write_time(folder_ / "out/run00001/history.csv"), written);
+  EXPECT_EQ(csv_table(folder_ / "out/study.csv").size(), 4u);
   std::vector<std::string> others = matrix;
   others[1] = "stage.fall.duration=0.01";
   EXPECT_FALSE(compare(others).says("there already")) << "runs of another scene do not count";
@@ -95,12 +99,12 @@ TEST_F(Compare, TellsOfRunsThatFail) {
   const Ending ending =
       compare({"--exact", "1", "--series", "fast: body.sand.velocity=[\"0\", \"0\"],[\"400\", \"0\"]"});
   EXPECT_EQ(ending.status, 1) << ending.output;
-  const auto rows = csv_table(folder_ / "out/compare.csv");
+  const auto rows = csv_table(folder_ / "out/study.csv");
   ASSERT_EQ(rows.size(), 2u);
   EXPECT_EQ(rows[0].at("failure"), "");
   EXPECT_NE(rows[1].at("failure").find("left the mesh"), std::string::npos) << rows[1].at("failure");
   EXPECT_EQ(rows[1].at("pareto"), "0");
-  EXPECT_NEAR(number(rows[0], "error"), std::abs(number(rows[0], "value") - 1), 1e-9);
+  EXPECT_NEAR(number(rows[0], "error"), std::abs(number(rows[0], "corner_x_m") - 1), 1e-9);
 }
 
 TEST_F(Compare, TakesFiniteElementsForTheTruth) {
@@ -110,12 +114,12 @@ TEST_F(Compare, TakesFiniteElementsForTheTruth) {
   const Ending ending = compare({"--series", "euler: integrator.fraction=0.8,0.4", "--reference",
                                  "finite elements: stage.fall.kind=quasi_static"});
   ASSERT_EQ(ending.status, 0) << ending.output;
-  const Row reference = csv_table(folder_ / "out/reference.csv").at(0);
-  EXPECT_EQ(reference.at("origin"), "finite elements");
-  const auto rows = csv_table(folder_ / "out/compare.csv");
+  EXPECT_EQ(reference().at("origin"), "finite elements");
+  const auto rows = csv_table(folder_ / "out/study.csv");
   ASSERT_EQ(rows.size(), 2u);
   for (const Row &row : rows)
-    EXPECT_NEAR(number(row, "error"), std::abs(number(row, "value") - number(reference, "value")), 1e-9);
+    EXPECT_NEAR(number(row, "error"), std::abs(number(row, "corner_x_m") - reference().at("value").get<double>()),
+                1e-9);
 }
 
 TEST_F(Compare, RefusesWhatItCannotRun) {
@@ -161,8 +165,8 @@ TEST_F(Compare, ChartsOutcomesAgainstAKey) {
   };
   const Ending ending = sweep({});
   EXPECT_EQ(ending.status, 0) << ending.output;
-  EXPECT_TRUE(ending.says("sweep.csv and sweep.png are in sweep")) << ending.output;
-  const auto rows = csv_table(folder_ / "sweep/sweep.csv");
+  EXPECT_TRUE(ending.says("study.csv, study.json and pictures are in sweep")) << ending.output;
+  const auto rows = csv_table(folder_ / "sweep/study.csv");
   ASSERT_EQ(rows.size(), 2u);
   EXPECT_EQ(rows[0].at("key"), "body.sand.velocity");
   EXPECT_EQ(rows[1].at("value"), "[0, -0.5 m/s]");
@@ -175,7 +179,7 @@ TEST_F(Compare, ChartsOutcomesAgainstAKey) {
                                                      "plain: body.sand.young_modulus=8e5"}))
                            .end();
   EXPECT_EQ(typed.status, 0) << typed.output;
-  const auto with_unit = csv_table(folder_ / "typed/sweep.csv");
+  const auto with_unit = csv_table(folder_ / "typed/study.csv");
   ASSERT_EQ(with_unit.size(), 4u);
   EXPECT_EQ(with_unit[1].at("value"), "2") << "a number in the unit that was typed";
   for (const Row &row : with_unit) EXPECT_EQ(row.at("unit"), "MPa") << "series on one axis have one unit";

@@ -47,8 +47,8 @@ TEST_F(Converge, SaysThatCellsDoNotDecideWhereAllMeshesMoveAlike) {
   for (const char *run : {"run_0.3536", "run_0.25", "run_0.1768"})
     EXPECT_TRUE(std::filesystem::is_regular_file(folder_ / ("out/" + std::string(run) + "/history.csv"))) << run;
   EXPECT_EQ(content(folder_ / "out/converge.png").substr(1, 3), "PNG");
-  EXPECT_NE(content(folder_ / "out/converge.csv").find("largest_displacement_m"), std::string::npos);
-  EXPECT_NE(content(folder_ / "out/converge.json").find("\"decides\": false"), std::string::npos);
+  EXPECT_NE(content(folder_ / "out/study.csv").find("largest_displacement_m"), std::string::npos);
+  EXPECT_NE(content(folder_ / "out/study.json").find("\"decides\": false"), std::string::npos);
 }
 
 // only the last centimetres before the free face move: cells of 0.35 m hardly have a particle there
@@ -57,7 +57,7 @@ TEST_F(Converge, SaysThatCellsDecideWhereTheyDoNotResolveTheMotion) {
   EXPECT_EQ(ending.status, 1) << ending.output;
   EXPECT_TRUE(ending.says("the cell size decides it")) << ending.output;
   EXPECT_FALSE(ending.says("averaging_length")) << "elastic soil does not soften: " << ending.output;
-  EXPECT_NE(content(folder_ / "out/converge.json").find("\"decides\": true"), std::string::npos);
+  EXPECT_NE(content(folder_ / "out/study.json").find("\"decides\": true"), std::string::npos);
   EXPECT_FALSE(std::filesystem::exists(folder_ / "out/converge.png"));
 }
 

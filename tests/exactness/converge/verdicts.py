@@ -4,7 +4,8 @@ import sys
 import unittest
 
 sys.path.insert(0, sys.argv.pop(1))
-from talus_converge import judge, settles  # noqa: E402
+from talus_statistics import settles  # noqa: E402
+from talus_study import judge  # noqa: E402
 
 
 def rows(**columns):

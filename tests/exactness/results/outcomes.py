@@ -263,7 +263,7 @@ class Outcomes(unittest.TestCase):
 
     def test_compare_says_the_same(self):
         printed = self.call("compare", "slope.toml", "-o", "compared", "-j", "2", "--no-plot", "--series", "strength: body.clay.cohesion=5 kPa,9 kPa")
-        table = rows(self.folder / "compared/sweep.csv")
+        table = rows(self.folder / "compared/study.csv")
         for one, other in zip(table, self.table[1:]):
             for name in ("state", "fails", "largest_displacement_m"):
                 self.assertEqual(one[name], other[name])

@@ -126,18 +126,14 @@ class Module(unittest.TestCase):
         compared = self.folder / "compared"
         self.call(PROGRAM, "compare", SCENE, "--no-plot", "-o", compared, "--set", *COARSE, "--series",
                   "residual: body.clay.residual_friction_angle=8 deg,17 deg")
-        table = Table(compared / "sweep.csv")
+        table = Table(compared / "study.csv")
         self.assertEqual((list(table["value"]), list(table["series"]), len(table)), ([8, 17], ["residual"] * 2, 2))
         self.refused(KeyError, "did you mean travel_distance_m", table.__getitem__, "travel_distanc_m")
         self.assertIn("2 runs", self.call(python, "-B", examples / "outcomes.py", compared, self.folder / "outcomes.png"))
         # two keys, and a run without a slide's distance: as if the same runs belonged to two levels of water
-        for name in ("runs.csv", "sweep.csv"):
-            head, *lines = (compared / name).read_text().splitlines()
-            both = [re.sub(r"body.clay.residual_friction_angle=", f"water.level={level} \\g<0>", line) for level in (0, 3) for line in lines]
-            (compared / name).write_text("\n".join([head, *both]) + "\n")
-        table = rows_of(compared / "sweep.csv")
+        table = [row | {"line": f"residual, water.level={level}"} for level in (0, 3) for row in rows_of(compared / "study.csv")]
         table[0]["travel_distance_m"] = ""
-        with open(compared / "sweep.csv", "w", newline="") as file:
+        with open(compared / "study.csv", "w", newline="") as file:
             writer = csv.DictWriter(file, table[0])
             writer.writeheader()
             writer.writerows(table)

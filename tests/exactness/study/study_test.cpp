@@ -252,7 +252,7 @@ TEST_F(Study, RepeatsRunsWhoseFilesHaveChanged) {
   const std::pair<std::vector<std::string>, std::string> commands[] = {
       {{"study", "study.toml", "-o", "out", "--no-plot"}, "out/study.csv"},
       {{"compare", "scene.toml", "-o", "compared", "--no-plot", "--series", "sand: body.sand.density=1800"},
-       "compared/sweep.csv"}};
+       "compared/study.csv"}};
   const auto moved = [&](const std::string &table) {
     return std::stod(csv_table(folder_ / table).back().at("largest_displacement_m"));
   };

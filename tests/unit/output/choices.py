@@ -16,7 +16,6 @@ import matplotlib
 import numpy as np
 
 sys.path.insert(0, sys.argv.pop(1))
-import talus_compare  # noqa: E402
 import talus_factor  # noqa: E402
 import talus_lines  # noqa: E402
 import talus_map_pictures  # noqa: E402
@@ -26,7 +25,6 @@ import talus_results  # noqa: E402
 import talus_sections  # noqa: E402
 import talus_study  # noqa: E402
 import talus_soil  # noqa: E402
-import talus_sweep  # noqa: E402
 from talus_colours import Colours  # noqa: E402
 from talus_histories import base_friction, draw_histories, drawn_energies, potential_that_left  # noqa: E402
 from talus_measures import MEASURES, flow  # noqa: E402
@@ -207,7 +205,7 @@ class Crosses(unittest.TestCase):
         painter._panel = lambda axes, snapshot, *_: painter._mark_escaped(axes, view, snapshot.time, 10.0)
         painter._frame_sheet = lambda *_: painter.said.append(painter.marked_escaped)
         figure = painter._sheet("velocity", None, [types.SimpleNamespace(time=time, step=1)], 1, [[0]])
-        talus_sweep.plt.close(figure)
+        talus_study.plt.close(figure)
         self.assertEqual(sum(len(line.get_xdata()) for line in figure.axes[0].lines), painter.said[0])
         return painter.said[0]
 
@@ -296,7 +294,7 @@ class Labels(unittest.TestCase):
         self.assertEqual(grouped([("", "", 1.0, 0.7)], 2.0), [("strength", 0)])
 
     def test_of_envelopes_lie_along_them_and_on_no_other(self):
-        figure, axes = talus_sweep.plt.subplots(figsize=(5, 4))
+        figure, axes = talus_study.plt.subplots(figsize=(5, 4))
         axes.set(xlim=(0, 56), ylim=(0, 58))
         lines = [("", "s = 0 Pa", 0.77, 2.0), ("", "s = 200 kPa", 0.78, 18.0), ("", "s = 500 kPa", 0.79, 22.5), ("", "s = 1 MPa", 0.79, 23.2)]
         name_envelopes(axes, lines)
@@ -308,14 +306,14 @@ class Labels(unittest.TestCase):
             self.assertTrue(inside.x0 < box.x0 and box.x1 < inside.x1 + 2 and box.y1 < inside.y1 + 2, (text.get_text(), box, inside))
             (x, y), (ahead, up) = axes.transData.transform([(0, 0), (1, slope)])
             self.assertAlmostEqual(text.get_rotation(), np.degrees(np.arctan2(up - y, ahead - x)), places=3)
-        talus_sweep.plt.close(figure)
+        talus_study.plt.close(figure)
 
     def with_points(self, places):
         """A section from (0, 0) to (10, 10) with the names of points."""
         painter = Painter.__new__(Painter)
         history = types.SimpleNamespace(points=lambda time: {name: np.array(place) for name, place in places.items()}, way=lambda name: np.array([places[name]] * 3))
         painter.results, painter.low, painter.spacing = types.SimpleNamespace(history=history), np.zeros(2), 0.5
-        figure, axes = talus_sweep.plt.subplots()
+        figure, axes = talus_study.plt.subplots()
         axes.set(xlim=(0, 10), ylim=(0, 10))
         painter._mark_points(axes, types.SimpleNamespace(aside=lambda place: [0.0], flat=lambda place: place), 0.0, 9.5)
         keep_apart(axes)
@@ -323,7 +321,7 @@ class Labels(unittest.TestCase):
         return figure, axes
 
     def test_of_points_of_a_model_do_not_cover_the_dots_of_others(self):
-        figure, axes = talus_sweep.plt.subplots()
+        figure, axes = talus_study.plt.subplots()
         axes.set(xlim=(0, 50), ylim=(0, 20))
         name_of_D2 = axes.transData.transform((23.679, 8.944)) + 9 * figure.dpi / 72  # up and to the right of its dot
         points = {"D2": (23.679, 8.944), "S2": axes.transData.inverted().transform(name_of_D2)}
@@ -333,7 +331,7 @@ class Labels(unittest.TestCase):
         for text in axes.texts:
             for name, place in points.items():
                 self.assertFalse(text.get_window_extent().contains(*axes.transData.transform(place)), (text.get_text(), name))
-        talus_sweep.plt.close(figure)
+        talus_study.plt.close(figure)
 
     def test_of_points_near_the_upper_edge_stand_below_them(self):
         painter = Painter.__new__(Painter)
@@ -341,31 +339,31 @@ class Labels(unittest.TestCase):
         tops = {text.get_text(): text.get_window_extent().y1 for text in axes.texts}
         self.assertLess(tops["crest"], axes.get_window_extent().y1)
         self.assertGreater(tops["toe"], axes.transData.transform((9, 2))[1])
-        talus_sweep.plt.close(figure)
+        talus_study.plt.close(figure)
 
     def test_of_points_beside_each_other_do_not_cover_each_other_and_one_particle_has_one(self):
         figure, axes = self.with_points({"crest": (5.0, 5.0), "brow": (5.1, 4.9), "shoulder": (5.0, 5.0)})
         self.assertEqual([text.get_text() for text in axes.texts], ["crest, shoulder", "brow"])
         one, other = (text.get_window_extent() for text in axes.texts)
         self.assertFalse(one.overlaps(other))
-        talus_sweep.plt.close(figure)
+        talus_study.plt.close(figure)
 
     def test_of_lines_have_colours_that_differ(self):
-        lines = np.array([matplotlib_colour(line) for line in talus_sweep.style.LINES])
+        lines = np.array([matplotlib_colour(line) for line in talus_study.style.LINES])
         apart = [np.linalg.norm(one - other) for k, one in enumerate(lines) for other in lines[:k]]
         self.assertGreater(min(apart), 0.19)  # it was 0.17 of kinetic and dissipated energy, which looked alike
 
     def test_and_titles_keep_away_from_the_edge_and_from_the_charts(self):
         for title in ("Slope", "A title of a scene that is so long that it has no room beside the headline of the chart"):
-            figure, axes = talus_sweep.plt.subplots(figsize=(6, 3), layout="constrained")
+            figure, axes = talus_study.plt.subplots(figsize=(6, 3), layout="constrained")
             axes.set_title("of the chart", loc="left")
-            talus_sweep.style.headline(figure, "Factor of safety", title)
+            talus_study.style.headline(figure, "Factor of safety", title)
             figure.canvas.draw()
             inch, own = figure.dpi, axes.get_tightbbox()
             for box in (text.get_window_extent() for text in (figure._suptitle, *figure.texts) if text.get_text().strip()):
                 self.assertGreater(min(box.x0, figure.bbox.x1 - box.x1, figure.bbox.y1 - box.y1), 0.09 * inch, title)
                 self.assertGreater(box.y0, own.y1, title)
-            talus_sweep.plt.close(figure)
+            talus_study.plt.close(figure)
 
 
 class Paths(unittest.TestCase):
@@ -640,7 +638,7 @@ class Resets(unittest.TestCase):
                     unittest.mock.patch("talus_lines.dimensionless", lambda results, times: None):
                 talus_lines.draw_line(results, line, "", [time[2], time[-1]])  # times before and after it
             self.assertEqual([curve.get_label().split(", ")[-1] for curve in seen[1].axes[0].lines], ["since the start", "since the end of stage gravity"])
-            talus_sweep.plt.close(seen[1])
+            talus_study.plt.close(seen[1])
             seen[0].canvas.draw()
             low, high = mean.get_xlim()
             shown = [text.get_text() for at, text in zip(mean.get_xticks(), mean.get_xticklabels()) if low <= at <= high]
@@ -699,7 +697,7 @@ class Histories(unittest.TestCase):
         for flows, first in ((False, 2.0), (True, 0.0)):
             scene, seen = {"stage": [{"name": "gravity", "gravity_ramp": 1, "pore_flow": flows}, {"name": "rain"}]}, {}
             results = types.SimpleNamespace(history=history, scene=scene, snapshots=[], title="", per_metre=lambda text: text)
-            with unittest.mock.patch.object(talus_sweep.style, "save", lambda figure, path: seen.update({path.name: figure})):
+            with unittest.mock.patch.object(talus_study.style, "save", lambda figure, path: seen.update({path.name: figure})):
                 draw_histories(results, pathlib.Path())
             upper = seen["water_ledger.png"].axes[0]
             gained = {line.get_label(): line for line in upper.lines}["gained"]
@@ -715,7 +713,7 @@ class Histories(unittest.TestCase):
         for resets, first in ((True, 3.0), (False, 0.0)):
             scene, seen = {"stage": [{"name": "gravity", "reset_displacement": resets}, {"name": "rain"}]}, {}
             results = types.SimpleNamespace(history=history, scene=scene, snapshots=snapshots, title="", per_metre=lambda text: text)
-            with unittest.mock.patch.object(talus_sweep.style, "save", lambda figure, path: seen.update({path.name: figure})):
+            with unittest.mock.patch.object(talus_study.style, "save", lambda figure, path: seen.update({path.name: figure})):
                 draw_histories(results, pathlib.Path())
             moved, speed = (seen[f"history_{name}.png"] for name in ("displacement", "velocity"))
             self.assertEqual((moved.axes[0].lines[0].get_xdata()[0], speed.axes[0].lines[0].get_xdata()[0]), (first, 0))
@@ -730,7 +728,7 @@ class Histories(unittest.TestCase):
         history.columns = {f"{name}_{what}": np.array(way) for name, way in ways.items() for what in ("x_m", "y_m", "displacement_m")}
         history.quantities = {f"{name}_{what}_m": Quantity(what, "m", "point", name) for name in ways for what in ("x", "y", "displacement")}
         results, seen = types.SimpleNamespace(history=history, scene={}, snapshots=[], title="", per_metre=lambda text: text), []
-        with unittest.mock.patch.object(talus_sweep.style, "save", lambda figure, path: seen.append(figure)):
+        with unittest.mock.patch.object(talus_study.style, "save", lambda figure, path: seen.append(figure)):
             draw_histories(results, pathlib.Path())
         self.assertEqual([text.get_text() for text in seen[0].axes[0].get_legend().get_texts()], ["crest, shoulder", "toe"])
 
@@ -1082,7 +1080,7 @@ class SlipSurface(unittest.TestCase):
                     if there:
                         np.testing.assert_allclose(drawn[name], points)
                 for sheet in sheets:
-                    talus_sweep.plt.close(sheet)
+                    talus_study.plt.close(sheet)
                 if found:
                     (folder / "run.h5").touch()
                     os.utime(folder / "slip_surface.csv", (0, 0))  # the folder has another run since
@@ -1210,21 +1208,19 @@ class Charts(unittest.TestCase):
         return [(axes.get_xlabel().replace("\n", " "), axes.get_ylabel().replace("\n", " ")) for axes in seen[0].axes if axes.get_xlabel()]
 
     def test_outcomes_stand_against_each_key_of_its_own(self):
-        rows = [{"series": key, "overrides": f"{key}={value}", "key": key, "value": value, "unit": unit, "failure": "", "state": FAILS,
-                 "volume_of_slide_m3": volume}
-                for key, unit, values in (("body.clay.cohesion", "Pa", ("6 kPa", "8 kPa")), ("body.clay.friction_angle", "deg", ("20", "25")))
-                for volume, value in enumerate(values, 3)]
-        rows = [row | {"volume_of_slide_m3": float(row["volume_of_slide_m3"])} for row in rows]
-        self.assertEqual(self.labels(talus_sweep.style, lambda: talus_sweep.draw(rows, "", True)),
+        rows = [{"line": key, "key": key, "value": value, "unit": unit, "failure": "", "state": FAILS, "volume_of_slide_m3": volume}
+                for key, unit, values in (("body.clay.cohesion", "kPa", (6.0, 8.0)), ("body.clay.friction_angle", "deg", (20.0, 25.0)))
+                for volume, value in zip((3.0, 4.0), values)]
+        self.assertEqual(self.labels(talus_study.style, lambda: talus_study.draw_outcomes(rows, "", True)),
                          [("body.clay.cohesion [kPa]", "volume of the slide [m³/m]"), ("body.clay.friction_angle [deg]", "volume of the slide [m³/m]")])
-        self.assertEqual(talus_sweep.title_of("volume_of_slide_m3", False), "volume of the slide [m³]")
-        self.assertEqual(talus_sweep.title_of("crest_largest_speed_m_s", True), "crest largest speed [m/s]")
+        self.assertEqual(talus_study.title_of("volume_of_slide_m3", False), "volume of the slide [m³]")
+        self.assertEqual(talus_study.title_of("crest_largest_speed_m_s", True), "crest largest speed [m/s]")
 
     def test_a_series_over_two_keys_is_a_line_for_each_value_of_the_first(self):
-        rows = [{"series": "both", "overrides": f"body.clay.cohesion={c} body.clay.friction_angle={phi}", "key": "body.clay.friction_angle", "value": phi}
-                for c in ("4 kPa", "8 kPa") for phi in ("15", "20")]
-        self.assertEqual(talus_sweep.series_lines(rows), ["both, body.clay.cohesion=4 kPa"] * 2 + ["both, body.clay.cohesion=8 kPa"] * 2)
-        self.assertEqual(talus_sweep.series_lines(rows[:2]), ["both"] * 2)
+        rows = [{"series": "both", "overrides": [f"body.clay.cohesion={c}", f"body.clay.friction_angle={phi}"]} for c in ("4 kPa", "8 kPa") for phi in ("15", "20")]
+        for some, lines in ((rows, ["both, body.clay.cohesion=4 kPa"] * 2 + ["both, body.clay.cohesion=8 kPa"] * 2), (rows[:2], ["both"] * 2)):
+            talus_study.name_lines(some)
+            self.assertEqual([row["line"] for row in some], lines)
 
     def test_energies_of_a_section_are_those_of_a_metre(self):
         history = History.__new__(History)
@@ -1234,15 +1230,15 @@ class Charts(unittest.TestCase):
         for per, unit in (("/m", "kJ/m"), ("", "kJ")):
             results = types.SimpleNamespace(history=history, scene={}, snapshots=[], title="", per_metre=lambda text, per=per: text + per)
             seen = []
-            with unittest.mock.patch.object(talus_sweep.style, "save", lambda figure, path: seen.append(figure)):
+            with unittest.mock.patch.object(talus_study.style, "save", lambda figure, path: seen.append(figure)):
                 draw_histories(results, pathlib.Path())
             self.assertEqual(sorted(axes.get_ylabel() for figure in seen for axes in figure.axes), ["displacement [m]", f"energy [{unit}]"])
 
     def test_errors_stand_against_each_key_of_its_own(self):
-        rows = [{"series": series, "key": key, "unit": unit, "parameter": value, "value": 1 + error, "error": error, "processor_s": 1, "pareto": "0", "failure": ""}
+        rows = [{"line": series, "key": key, "unit": unit, "value": value, "way": 1 + error, "error": error, "processor_s": 1.0, "pareto": 0, "failure": ""}
                 for series, key, unit in (("euler", "integrator.fraction", ""), ("arkode", "integrator.velocity_tolerance", "m/s"))
                 for value, error in ((0.1, 0.01), (0.001, 0.001))]
-        labels = self.labels(talus_compare, lambda: talus_compare.draw(rows, {"uncertainty": "0", "value": "1", "measure": "way"}, ""))
+        labels = self.labels(talus_study.style, lambda: talus_study.draw_errors(rows, {"uncertainty": 0.0, "value": 1.0, "measure": "way"}, ""))
         self.assertEqual([x for x, _ in labels], ["processor time [s]", *2 * ["integrator.fraction"], *2 * ["integrator.velocity_tolerance [m/s]"]])
 
     def test_correlations_of_a_sample_stand_beside_the_asked_ones(self):
@@ -1255,41 +1251,41 @@ class Charts(unittest.TestCase):
         self.assertEqual(talus_study.correlation_lines([]), [])
 
     def test_values_of_a_series_are_not_cut_off_by_another_one_that_scatters_less(self):
-        rows = [{"series": key, "key": key, "unit": "", "parameter": k + 1, "value": value, "error": abs(value - 2), "processor_s": k + 1, "pareto": "0", "failure": ""}
+        rows = [{"line": key, "key": key, "unit": "", "value": k + 1.0, "way": value, "error": abs(value - 2), "processor_s": k + 1, "pareto": 0, "failure": ""}
                 for key, values in (("fraction", (2.001, 2.002, 2.003, 2.004)), ("size", (1.9, 2.05, 2.1))) for k, value in enumerate(values)]
         seen = []
-        with unittest.mock.patch.object(talus_compare, "save", lambda figure, path: seen.append(figure)):
-            talus_compare.draw(rows, {"uncertainty": "0.002", "value": "2", "measure": "way"}, "")
+        with unittest.mock.patch.object(talus_study.style, "save", lambda figure, path: seen.append(figure)):
+            talus_study.draw_errors(rows, {"uncertainty": 0.002, "value": 2.0, "measure": "way"}, "")
         cost, _, _, _, sizes = seen[0].axes
         low, high = sizes.get_ylim()
         self.assertTrue(low < 1.9 and high > 2.1, (low, high))
         low, high = cost.get_ylim()
         self.assertTrue(0.0002 < low < 0.002, low)  # the uncertainty brings no empty decade
-        talus_sweep.plt.close(seen[0])
+        talus_study.plt.close(seen[0])
 
     def test_show_no_more_named_points_than_have_room(self):
-        rows = [{"series": "soil", "key": "size", "value": str(size), "unit": "m", "overrides": f"size={size}", "failure": "", "state": FAILS,
+        rows = [{"line": "soil", "key": "size", "value": float(size), "unit": "m", "failure": "", "state": FAILS,
                  **{f"m{n}_displacement_m": 1.0 * n * size for n in range(14)}, **{f"m{n}_largest_speed_m_s": 2.0 for n in range(14)}} for size in (1, 2)]
-        self.assertEqual(talus_sweep.points_of(rows)[1], ["m0", "m3", "m7", "m10", "m13"])
-        self.assertIn("Of 14 named points 5", talus_sweep.said_of_points(rows))
-        self.assertLess(max(map(len, talus_sweep.table(rows, width=10**6))), 250)
-        self.assertEqual(talus_sweep.said_of_points([{"m1_displacement_m": 1.0}]), "")
+        self.assertEqual(talus_study.points_of(rows)[1], ["m0", "m3", "m7", "m10", "m13"])
+        self.assertIn("Of 14 named points 5", talus_study.said_of_points(rows))
+        self.assertLess(max(map(len, talus_study.table_of_outcomes(rows, width=10**6))), 250)
+        self.assertEqual(talus_study.said_of_points([{"m1_displacement_m": 1.0}]), "")
         seen = []
-        with unittest.mock.patch.object(talus_sweep.style, "save", lambda figure, path: seen.append(figure)):
-            talus_sweep.draw(rows, "")
+        with unittest.mock.patch.object(talus_study.style, "save", lambda figure, path: seen.append(figure)):
+            talus_study.draw_outcomes(rows, "")
         colours = [{line.get_label(): line.get_color() for line in axes.lines if line.get_label().startswith("m")} for axes in seen[0].axes]
         self.assertEqual(colours[0], colours[1])
         self.assertEqual(len(set(colours[0].values())), 5)
-        talus_sweep.plt.close(seen[0])
+        talus_study.plt.close(seen[0])
 
     def test_labels_of_logarithmic_axes_are_few_and_keep_apart(self):
         for low, high in ((0.1, 1.1), (2e-4, 3e-3), (0.021, 0.048), (1, 1e3), (1e-9, 1e4), (7e4, 2e6)):
-            rows = [{"series": "euler", "key": "integrator.fraction", "unit": "", "parameter": value, "value": 1 + value, "error": value, "processor_s": value, "pareto": "0", "failure": ""}
+            rows = [{"line": "euler", "key": "integrator.fraction", "unit": "", "value": float(value), "way": 1 + value, "error": value, "processor_s": value, "pareto": 0, "failure": ""}
                     for value in np.geomspace(low, high, 4)]
             seen = []
-            with unittest.mock.patch.object(talus_compare, "save", lambda figure, path: seen.append(figure)), \
-                    unittest.mock.patch.object(talus_compare, "scale_of", lambda values: "log"):
-                talus_compare.draw(rows, {"uncertainty": "0", "value": "1", "measure": "way"}, "")
+            with unittest.mock.patch.object(talus_study.style, "save", lambda figure, path: seen.append(figure)), \
+                    unittest.mock.patch.object(talus_study, "scale_of", lambda values: "log"):
+                talus_study.draw_errors(rows, {"uncertainty": 0.0, "value": 1.0, "measure": "way"}, "")
             seen[0].canvas.draw()
             for axes in seen[0].axes:
                 for axis, name in ((axes.xaxis, "x"), (axes.yaxis, "y")):
@@ -1301,8 +1297,8 @@ class Charts(unittest.TestCase):
                     self.assertTrue(2 <= len(labels) <= 6, (low, high, [label.get_text() for label in labels]))
                     boxes = sorted(((box.x0, box.x1) if name == "x" else (box.y0, box.y1) for box in (label.get_window_extent() for label in labels)))
                     self.assertTrue(all(one[1] < other[0] for one, other in zip(boxes, boxes[1:])), (low, high, name, [label.get_text() for label in labels]))
-            talus_sweep.plt.close(seen[0])
-        self.assertEqual([talus_sweep.style.log_number(value) for value in (2e-4, 1e-5, 0.002, 50, 3e5)], ["2×10⁻⁴", "10⁻⁵", "0.002", "50", "3×10⁵"])
+            talus_study.plt.close(seen[0])
+        self.assertEqual([talus_study.style.log_number(value) for value in (2e-4, 1e-5, 0.002, 50, 3e5)], ["2×10⁻⁴", "10⁻⁵", "0.002", "50", "3×10⁵"])
 
     def test_runs_of_a_study_that_broke_off_are_crosses(self):
         rows = [{"c": str(c), "way": None if c == 3 else float(c), "failure": "no equilibrium" if c == 3 else ""} for c in range(5)]
@@ -1327,22 +1323,22 @@ class Charts(unittest.TestCase):
     def test_panels_of_a_key_share_its_range_and_show_standing_runs(self):
         rows = []
         for level in ("0", "3"):
-            for c in ("4", "7", "10"):
-                fails = level == "3" and c == "4"
-                rows.append({"series": "wet", "overrides": f"water.level={level} body.clay.cohesion={c} kPa", "key": "body.clay.cohesion", "value": c, "unit": "kPa", "failure": "",
+            for c in (4.0, 7.0, 10.0):
+                fails = level == "3" and c == 4
+                rows.append({"line": f"wet, water.level={level}", "key": "body.clay.cohesion", "value": c, "unit": "kPa", "failure": "",
                              "state": FAILS if fails else STANDS, "load_time_of_failure_s": 1.3 if fails else None, "largest_displacement_m": 7.0 if fails else 1e-4,
                              "travel_distance_m": 43.0 if fails else 0.0})
         seen = []
-        with unittest.mock.patch.object(talus_sweep.style, "save", lambda figure, path: seen.append(figure)):
-            talus_sweep.draw(rows, "")
+        with unittest.mock.patch.object(talus_study.style, "save", lambda figure, path: seen.append(figure)):
+            talus_study.draw_outcomes(rows, "")
         ranges = {axes.get_xlim() for axes in seen[0].axes}
         self.assertEqual(len(ranges), 1)
         self.assertTrue(3 < next(iter(ranges))[0] < 4 and 10 < next(iter(ranges))[1] < 11, ranges)
         time = seen[0].axes[0]
         upper = [float(line.get_xdata()[0]) for line in time.lines if line.get_transform() == time.get_xaxis_transform()]
         self.assertEqual(upper, [4, 7, 10, 7, 10])  # without a failure
-        self.assertIn(talus_sweep.NEVER, [text.get_text() for text in seen[0].legends[0].get_texts()])
-        talus_sweep.plt.close(seen[0])
+        self.assertIn(talus_study.NEVER, [text.get_text() for text in seen[0].legends[0].get_texts()])
+        talus_study.plt.close(seen[0])
 
     VARIABLES = [{"name": "c", "unit": "kPa", "numeric": True, "random": True}, {"name": "rise", "unit": "m", "numeric": True, "random": False},
                  {"name": "drain", "unit": "", "numeric": False, "random": False}]

@@ -1,17 +1,12 @@
 #pragma once
-/// The arithmetic of `talus compare`: what its arguments mean, and what a series converges to.
+/// Values and measures as they are typed: series, lists with units, columns of a history.
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <fstream>
-#include <regex>
-#include <sstream>
-#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "output/events.h"
 #include "scene/reader.h"
 #include "scene/words.h"
 
@@ -43,12 +38,6 @@ inline std::vector<std::string> pieces(const std::string &text, char separator) 
   }
   for (std::string &piece : out) piece = trimmed(piece);
   return out;
-}
-
-/// A sentence with # for each of its numbers and their signs, alike for sentences that differ in their numbers alone.
-inline std::string without_numbers(const std::string &sentence) {
-  static const std::regex number("-?[0-9][0-9.]*(e[-+]?[0-9]+)?");
-  return std::regex_replace(sentence, number, "#");
 }
 
 /// A number, also one with a unit behind it ("5 mm"); NaN if it is none.
@@ -173,82 +162,6 @@ inline std::vector<std::string> columns_of(const std::string &path) {
 inline void require_column(const std::vector<std::string> &names, const std::string &column) {
   if (std::find(names.begin(), names.end(), column) == names.end())
     throw SceneError("history.csv has no column " + column + "; " + suggestion(column, names));
-}
-
-/// Did the run with this history.csv end with its soil at rest, by rest_speed, or in equilibrium?
-inline bool ended_at_rest(const std::string &history, const std::string &last_stage) {
-  return std::ranges::any_of(read_events(std::filesystem::path(history).parent_path()), [&](const Event &one) {
-    return one.stage == last_stage &&
-           (one.kind == event::rest || one.kind == event::slow || one.kind == event::equilibrium);
-  });
-}
-
-/// The measure of a history.csv, linear between its lines. At a time after the end of a run that came to rest before,
-/// the last line counts; after another end there is no value (NaN). Throws SceneError for a column it lacks.
-inline double value_of(const std::string &path, const Measure &measure) {
-  std::ifstream file(path);
-  std::string line, last_stage;
-  std::getline(file, line);
-  const std::vector<std::string> names = columns_of(path);
-  require_column(names, measure.column);
-  const auto place = [&](const std::string &name) {
-    return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
-  };
-  const std::size_t column = place(measure.column), stage = place("stage");
-  double last_time = 0, last = NAN, largest = -INFINITY;
-  while (std::getline(file, line)) {
-    const std::vector<std::string> cells = pieces(line, ',');
-    if (cells.size() != names.size()) continue;
-    const double time = number_of(cells[0]), value = number_of(cells[column]);
-    if (time >= measure.time * (1 - 1e-9))
-      return std::isnan(last) || time <= measure.time
-                 ? value
-                 : last + (value - last) * (measure.time - last_time) / (time - last_time);
-    last_time = time, last = value, largest = std::max(largest, value);
-    if (stage < cells.size()) last_stage = unquoted(cells[stage]);
-  }
-  if (measure.largest) return std::isfinite(largest) ? largest : NAN;
-  return std::isnan(measure.time) || ended_at_rest(path, last_stage) ? last : NAN;
-}
-
-struct Reference {
-  double value, uncertainty;
-  std::string origin;
-};
-
-/// Limit of values refined by a parameter that goes to zero, from the three finest: Richardson's extrapolation with the
-/// order that they show, if they converge at one between 0.5 and 8, and if above 2.5 a fourth run, where there is one,
-/// lies on the same way (a high order is otherwise a coincidence of the last two runs); otherwise the finest value, as
-/// uncertain as the last two refinements changed it. A refinement that changed nothing, such as a tolerance where
-/// stability rules, is none.
-inline Reference extrapolate(std::vector<std::pair<double, double>> refined) {
-  std::erase_if(refined, [](const auto &p) { return !std::isfinite(p.first) || !std::isfinite(p.second); });
-  std::sort(refined.rbegin(), refined.rend());
-  refined.erase(std::unique(refined.begin(), refined.end(),
-                            [](const auto &p, const auto &finer) { return finer.second == p.second; }),
-                refined.end());
-  std::reverse(refined.begin(), refined.end());
-  if (refined.size() < 2) return {NAN, INFINITY, "too few runs"};
-  const double finest = refined[0].second, change = refined[1].second - finest;
-  double uncertain = std::abs(change);
-  if (refined.size() > 2) {
-    const double before = refined[2].second - refined[1].second, r1 = refined[1].first / refined[0].first,
-                 r2 = refined[2].first / refined[1].first;
-    uncertain = std::max(uncertain, std::abs(before));
-    if (change * before > 0 && std::abs(r1 - r2) < 0.05 * r1) {
-      const double order = std::log(before / change) / std::log(r1);
-      const double earlier = refined.size() > 3 ? refined[3].second - refined[2].second : before;
-      const bool by_chance = order > 2.5 && !(earlier * before > 0 && std::abs(earlier) >= std::abs(before));
-      if (order > 0.5 && order < 8 && !by_chance) {
-        const double rest = change / (std::pow(r1, order) - 1);
-        std::ostringstream text;
-        text.precision(2);
-        text << "extrapolated at the observed order " << order;
-        return {finest - rest, std::abs(rest), text.str()};
-      }
-    }
-  }
-  return {finest, uncertain, "its finest run"};
 }
 
 }  // namespace talus

@@ -1,0 +1,84 @@
+#pragma once
+/// One scene run many times with other values, each run a process of its own, several at a time. `talus study` fills in
+/// a sweep, and `talus compare` and `talus converge` do so as its presets: the list of runs, and what the tables,
+/// pictures and statements of src/output/plots/talus_study.py need to know of it.
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "commands/commands.h"
+#include "commands/values.h"
+#include "scene/scene.h"
+
+namespace talus {
+
+using Json = nlohmann::ordered_json;
+
+/// One run.
+struct Trial {
+  std::vector<std::string> overrides{};  ///< key.path=value, in addition to those of all runs
+  Json columns = Json::object();         ///< of the table, before those of all runs
+  std::string folder{};                  ///< of its results, in that of the sweep; runNNNNN unless given
+  bool done = false, failed = false;     ///< failed: it ended with an error
+  std::string cause{};                   ///< the last message of a run that failed
+  double cpu = 0, wall = 0;              ///< of the whole process, meshing included [s]
+};
+
+/// Options of all commands that sweep.
+struct SweepOptions {
+  std::string directory;  ///< of runs, table and pictures
+  std::vector<std::string> set;
+  int jobs = 0;  ///< runs at the same time; 0: one per core
+  bool force = false, no_plot = false, no_umat = false;
+};
+/// Adds them, and returns --set.
+CLI::Option *add_sweep_options(CLI::App &command, SweepOptions &options, const std::string &meaning_of_set,
+                               const std::string &meaning_of_output);
+
+struct Sweep {
+  std::string scene;             ///< file
+  std::vector<std::string> set;  ///< overrides of all runs
+  SweepOptions options;  ///< force: runs of another sweep in the same folders, and failed runs, are replaced; no_umat:
+                         ///< no run loads a library
+  /// Columns of history.csv: the stages must last so long, and one that no history of the scene has is refused before
+  /// anything runs; the first run under way that lacks one ends all.
+  std::vector<std::string> measures{};
+  Json shown = Json::object();              ///< what the script is told beside the runs, `preset` first of all
+  std::vector<std::string> command{"run"};  ///< of each run, with its options
+  bool refusal_ends = true;                 ///< a run that is refused as bad input ends all; else it is one that failed
+  std::vector<Trial> trials{};
+};
+
+/// Folder of a run by its number.
+std::string run_name(std::size_t number);
+
+/// Performs a sweep: reads the scene of every run, which refuses bad keys before anything runs; keeps other programs
+/// out of the folder; runs what was not completed there before with the same scene, overrides and files, a progress
+/// line each; writes DIR/design.json and starts the script that makes DIR/study.csv, DIR/study.json and pictures of it.
+/// Returns the status of the script. Throws SceneError where anything is refused, and std::runtime_error after SIGINT
+/// or SIGTERM, which end the runs under way too, or where a run was killed: called again, the command continues with
+/// the missing runs.
+int perform(Sweep sweep);
+
+/// The scene with all that other rooms read of it later: laws, boundaries and the integrator. Throws SceneError where a
+/// key or a value of any of them is refused, with `no_umat` also a law that loads a library.
+Scene read_wholly(const std::string &file, const std::vector<std::string> &set, bool no_umat);
+
+/// What is wrong with a list of keys of a scene that take values together, as a sentence that goes on from it: two are
+/// the same key, or one lies in the table at another. Empty if nothing is.
+std::string same_keys(const Scene &scene, const std::vector<std::string> &keys);
+
+/// Unit of a number without one at a key of a scene, such as body.clay.cohesion; empty where it has none.
+std::string unit_of_key(const std::string &key);
+
+/// To be called first by every program: a run of a sweep ends by SIGTERM when the program that started it is gone, even
+/// killed. Programs that the run starts itself are not concerned.
+void end_with_starter();
+/// To be called by what handles SIGTERM: a run whose starter is gone has some seconds to end in order, also in the
+/// midst of a mesh or an equilibrium, and is ended then. Safe in a signal handler.
+void end_soon_without_starter();
+/// To be called with the exit status of every program: a run of a sweep says by another status that a signal has ended
+/// it.
+int status_for_starter(int status);
+
+}  // namespace talus
