@@ -48,6 +48,8 @@ STUDIES = {
         "no damping": ("scene.toml", [COARSE, "stage.water.damping=0"]),
         "damping 0.1": ("scene.toml", [COARSE, "stage.water.damping=0.1"]),
         "residual cohesion 300 kPa": ("scene.toml", [COARSE, "body.rock.residual_cohesion=300 kPa"]),
+        "E = 100 MPa, residual cohesion 300 kPa": ("scene.toml", [COARSE, "body.rock.young_modulus=100 MPa", "body.rock.residual_cohesion=300 kPa"]),
+        "E = 100 MPa, residual cohesion 300 kPa, cells of 10 m": ("scene.toml", ["body.rock.young_modulus=100 MPa", "body.rock.residual_cohesion=300 kPa"]),
         "E = 200 MPa, residual cohesion 300 kPa": ("scene.toml", [COARSE, "body.rock.young_modulus=200 MPa", "body.rock.residual_cohesion=300 kPa"]),
         "no lake": ("scene.toml", [COARSE, *NO_LAKE]),
         "no lake, head 9.5 m lower": ("scene.toml", [COARSE, *NO_LAKE, *LOWER_HEAD]),
