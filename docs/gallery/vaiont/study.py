@@ -97,7 +97,7 @@ def outcomes(results):
     energy = measures.energy_of_slide(results)
     row |= {f"{name}_GJ": written(1, energy[name] / 1e9) for name in ("gravity", "water", "base", "rock", "kinetic")}
     row |= {"yield_m": written(0, measures.level_of_yield(results)), "bank_s": written(1, measures.first_yield(results, "m13"))}
-    return row | {"drop_m": written(1, energy["drop"]), "frictionless_m_s": written(1, energy["frictionless"]), "steps": results.history.step[-1]}
+    return row | {"drop_m": written(1, energy["drop"]), "frictionless_m_s": written(1, energy["frictionless"]), "steps": int(results.history.step[-1])}
 
 
 def study(talus, name):
