@@ -23,19 +23,9 @@ CASES = (
     ("as heated.toml", []),
     ("cells of 12 m", ["mesh.size=12"]),
     ("heat without expansion", [BED + "thermal_pressurisation=0"]),
-    ("heat when the water has risen to 60 m", ["stage.water.duration=80"]),
-    ("heat from the rising water on", ["stage.water.softening=true"]),
-    ("undrained", [BED + "hydraulic_conductivity=0"]),
     ("thickness 1.4 mm", [BED + "thickness=1.4e-3"]),
-    ("thickness 5 mm", [BED + "thickness=5e-3"]),
-    ("thickness 2 cm", [BED + "thickness=2e-2"]),
     ("thickness 10 cm", [BED + "thickness=0.1"]),
-    ("conductivity 5e-12 m/s", [BED + "hydraulic_conductivity=5e-12"]),
-    ("conductivity 2e-11 m/s", [BED + "hydraulic_conductivity=2e-11"]),
-    ("conductivity 1e-10 m/s", [BED + "hydraulic_conductivity=1e-10"]),
     ("conductivity 1e-9 m/s", [BED + "hydraulic_conductivity=1e-9"]),
-    ("pressurisation 29 kPa/K", [BED + "thermal_pressurisation=29e3"]),
-    ("pressurisation 116 kPa/K", [BED + "thermal_pressurisation=116e3"]),
 )
 COLUMNS = ("case", "ended", "level_m", "to_10_m_s_s", "slip_m", "speed_m_s", "run_out_m", "friction_deg", "pressure_MPa", "warmer_K", "hottest_K")
 
@@ -59,7 +49,7 @@ def row_of(name, results):
 
     return {"case": name, "ended": "broke off" if results.broke_off() else "completed",
             "level_m": written(fast, measures.levels(results), 0), "to_10_m_s_s": written(fast, history.time - history.time[heats][0], 1), "slip_m": written(halved, columns["bed_slip_m"], 2),
-            "speed_m_s": f"{speed.max():.1f}", "run_out_m": f"{measures.run_out(results, 'P0'):.0f}",
+            "speed_m_s": f"{speed.max():.1f}", "run_out_m": f"{measures.way_in_all(results, 'P0'):.0f}",
             "friction_deg": f"{np.degrees(np.arctan(friction[fastest])):.1f}", "pressure_MPa": f"{columns['bed_excess_pressure_Pa'][fastest] / 1e6:.2f}",
             "warmer_K": f"{columns['bed_temperature_K'][fastest]:.0f}", "hottest_K": f"{columns['bed_hottest_K'][fastest]:.0f}"}
 

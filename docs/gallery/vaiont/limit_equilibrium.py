@@ -21,6 +21,7 @@ SECTION = HERE.parents[2] / "meshes/vaiont.csv"
 GRAVITY, SOLID, WATER, POROSITY = 9.81, 2.7, 1.0, 0.2  # [m/s2], [t/m3]
 PEAK, RESIDUAL = (300.0, 42.0), (0.0, 36.0)            # cohesion [kPa], friction angle [deg]
 LEVELS = (0, 30, 53, 57, 60)                           # of the water above the horizontal plane [m]
+LOWER_HEAD = 9.5                                       # by which the ground of the head is lower where the lake does not rest on the toe [m]
 
 
 def read_section(path):
@@ -115,11 +116,13 @@ def print_tables(path):
     area = below(ground + [foot, kink], 0)[0]
     print(f"area {area:.0f} m2, dip {math.degrees(math.atan2(ground[0][1] - kink[1], kink[0] - ground[0][0])):.1f} deg, "
           f"{np.interp(kink[0], *np.array(ground).T) - kink[1]:.0f} m over the kink")
-    print("level_m,peak_psi_0,angle,peak_psi_phi,angle,residual_psi_0,residual_psi_phi,peak_psi_0_without_thrust")
+    lower = ([ground[0], (ground[1][0], ground[1][1] - LOWER_HEAD), *ground[2:]], kink, foot)
+    print("level_m,peak_psi_0,angle,peak_psi_phi,residual_psi_0,no_lake,no_lake_lower_head,no_lake_base_12.3")
     for level in LEVELS:
-        a, b = least(section, level), least(section, level, dilating=True)
-        print(f"{level},{a[0]:.3f},{a[1]:.1f},{b[0]:.3f},{b[1]:.1f},{least(section, level, rock=RESIDUAL)[0]:.3f},"
-              f"{least(section, level, rock=RESIDUAL, dilating=True)[0]:.3f},{least(section, level, thrust=False)[0]:.3f}")
+        peak, angle = least(section, level)
+        others = (least(section, level, dilating=True), least(section, level, rock=RESIDUAL), least(section, level, thrust=False),
+                  least(lower, level, thrust=False), least(section, level, base=12.3, thrust=False))
+        print(f"{level},{peak:.3f},{angle:.1f}," + ",".join(f"{factor:.3f}" for factor, _ in others))
 
 
 if __name__ == "__main__":

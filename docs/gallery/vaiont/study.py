@@ -1,120 +1,126 @@
 #!/usr/bin/python3
-"""Runs the scene with each uncertain parameter changed, in cells of 15 m, and writes sensitivity.csv:  study.py TALUS [CASE ...]
-With names of cases only these are run, and the rows of the others stay as they are."""
+"""Studies of the Vaiont scene: each choice of the model beside its alternative, meshes, and the pictures of the page.
 
+    study.py TALUS [choices|meshes|figures ...]
+
+TALUS is the program (build/release/bin/talus). The first two add to NAME.csv beside this file the runs that are not in it yet; `figures` runs the scene
+and draws its pictures.
+"""
 import csv
-import math
-import pathlib
+import re
 import subprocess
 import sys
 import tempfile
-from concurrent.futures import ThreadPoolExecutor, as_completed
+from pathlib import Path
 
-HERE = pathlib.Path(__file__).resolve().parent
+HERE = Path(__file__).resolve().parent
+SECTION = HERE.parents[2] / "meshes/vaiont.csv"
 sys.path.insert(0, str(HERE.parents[2] / "src/output/plots"))
 sys.path.insert(0, str(HERE))
-
 import measures  # noqa: E402
-import mirrored  # noqa: E402
 from talus_results import Results  # noqa: E402
 
-SIZE = 15  # m, of the cells where a case says nothing else
+COARSE = "mesh.size=15"
+STIFF = ["body.rock.young_modulus=5 GPa", "stage.water.damping=0"]
+# Water in the rock alone: the water table comes down to the toe within 150 m, so that nothing rests on the toe.
+NO_LAKE = ["water.level=0", "water.excess=1000 * 9.81 * max(0, 640 + hw(t) * min(1, max(0, (1115.6 - x) / 150)) - y)"]
+SLOWER = ["functions.hw=[[0, 0], [40, 30], [80, 53], [100, 57], [120, 60]]", "functions.phi_b=[[0, 12], [210, 12], [211, 0]]", "stage.water.duration=210"]
+# Sections that differ in some lines.
+SECTIONS = {
+    "lower_head": [(r"^interface0,247.8,963$", "interface0,247.8,953.5")],  # 9.5 m
+    "far_bank": [(r",1255,", ",1405,"), (r",1755,", ",1905,")],  # 150 m
+}
+LOWER_HEAD = ["mesh.section=lower_head"]
+FAR_BANK = ["mesh.section=far_bank", "water.table=[[-150, 640], [1905, 640]]"]
 
 
-def times(factor):
-    """The scene with its water `factor` times as slow, and as long a time to come to rest at 60 m."""
-    t = [factor * each for each in (20, 40, 50, 60)]
-    end = t[-1] + 90
-    return [f"functions.hw=[[0, 0], [{t[0]}, 30], [{t[1]}, 53], [{t[2]}, 57], [{t[3]}, 60]]",
-            f"functions.phi_b=[[0, 12], [{end}, 12], [{end + 1}, 0]]", f"stage.water.duration={end}"]
+def base(before, after):
+    return f"functions.phi_b=[[0, {before}], [150, {before}], [151, {after}]]"
 
 
-def strength(factor):
-    """All strength times a factor."""
-    angle = lambda degrees: f"{math.degrees(math.atan(factor * math.tan(math.radians(degrees)))):.4f}"
-    return [f"body.rock.cohesion={factor * 300e3}", f"body.rock.friction_angle={angle(42)}", f"body.rock.residual_friction_angle={angle(36)}",
-            f"functions.phi_b=[[0, {angle(12)}], [150, {angle(12)}], [151, 0]]"]
+# name of a study: {name of a run: (scene, overrides)}
+STUDIES = {
+    "choices": {
+        "the scene": ("scene.toml", [COARSE]),
+        "E = 5 GPa, no damping": ("scene.toml", [COARSE, *STIFF]),
+        "E = 200 MPa": ("scene.toml", [COARSE, "body.rock.young_modulus=200 MPa"]),
+        "E = 1 GPa": ("scene.toml", [COARSE, "body.rock.young_modulus=1 GPa"]),
+        "no damping": ("scene.toml", [COARSE, "stage.water.damping=0"]),
+        "damping 0.1": ("scene.toml", [COARSE, "stage.water.damping=0.1"]),
+        "residual cohesion 300 kPa": ("scene.toml", [COARSE, "body.rock.residual_cohesion=300 kPa"]),
+        "E = 100 MPa, residual cohesion 300 kPa": ("scene.toml", [COARSE, "body.rock.young_modulus=100 MPa", "body.rock.residual_cohesion=300 kPa"]),
+        "E = 100 MPa, residual cohesion 300 kPa, cells of 10 m": ("scene.toml", ["body.rock.young_modulus=100 MPa", "body.rock.residual_cohesion=300 kPa"]),
+        "E = 200 MPa, residual cohesion 300 kPa": ("scene.toml", [COARSE, "body.rock.young_modulus=200 MPa", "body.rock.residual_cohesion=300 kPa"]),
+        "no lake": ("scene.toml", [COARSE, *NO_LAKE]),
+        "no lake, head 9.5 m lower": ("scene.toml", [COARSE, *NO_LAKE, *LOWER_HEAD]),
+        "no lake, base of 12.3 degrees": ("scene.toml", [COARSE, *NO_LAKE, base(12.3, 0)]),
+        "water rises in twice the time": ("scene.toml", [COARSE, *SLOWER]),
+        "base of 5 degrees": ("scene.toml", [COARSE, base(12, 5)]),
+        "bank 150 m farther": ("scene.toml", [COARSE, *FAR_BANK]),
+        "dry until the base is lost": ("scene.toml", [COARSE, "functions.hw=0"]),
+    },
+    "meshes": {f"{size} m": ("scene.toml", [f"mesh.size={size}"]) for size in (15, 12, 10)},
+}
 
 
-CASES = (
-    ("as the scene", []),
-    ("mirrored: x to -x", lambda talus, folder: mirrored.write(talus, folder, SIZE)),
-    *((f"cells of {size} m", [f"mesh.size={size}"]) for size in (20, 17, 16, 15.5, 15.1, 14.9, 14, 13, 12.5)),
-    ("cells of 12 m", ["mesh.size=12"]),
-    ("cells of 11 m", ["mesh.size=11"]),
-    ("cells of 10 m", ["mesh.size=10"]),
-    ("cells of 8 m", ["mesh.size=8"]),
-    *((f"other round-off: snapshots every {interval} s", [f"output.interval={interval}"]) for interval in (0.5, 1, 1.25, 1.5, 3)),
-    *((f"other round-off: the scene shifted, {right:g} m in x, {up:g} m in y",
-       lambda talus, folder, right=right, up=up: mirrored.write_shifted(talus, folder, SIZE, right, up))
-      for right, up in ((0, -640), (0, 360), (1000, 0), (3000, -640))),
-    ("other round-off: steps of 0.59 of the critical one (0.6)", ["integrator.fraction=0.59"]),
-    ("softening of the cell, 20 m", ["body.rock.averaging_length=0", "mesh.size=20"]),
-    ("softening of the cell, 15 m", ["body.rock.averaging_length=0"]),
-    ("softening of the cell, 12 m", ["body.rock.averaging_length=0", "mesh.size=12"]),
-    ("averaging_length 40 m", ["body.rock.averaging_length=40"]),
-    ("averaging_length 10 m, cells of 10 m", ["body.rock.averaging_length=10", "mesh.size=10"]),
-    ("reference_size halved (or eta doubled)", ["body.rock.reference_size=12"]),
-    ("reference_size doubled (or eta halved)", ["body.rock.reference_size=48"]),
-    ("hardly any softening, eta 1", ["body.rock.shape_factor=1"]),
-    ("all strength 1 % lower", strength(0.99)),
-    ("all strength 1 % higher", strength(1.01)),
-    *((f"cells of {size} m, all strength {abs(percent)} % {'lower' if percent < 0 else 'higher'}", [f"mesh.size={size}", *strength(1 + percent / 100)])
-      for size, percent in ((16, -1), (16, -2), (14, -1), (11, 1), (11, 2))),
-    ("gravity does not soften the rock", ["stage.gravity.softening=false", "stage.settle.softening=false"]),
-    ("residual cohesion 75 kPa", ["body.rock.residual_cohesion=75e3"]),
-    ("residual cohesion 150 kPa", ["body.rock.residual_cohesion=150e3"]),
-    *((f"residual cohesion {c} kPa, cells of 12 m", [f"body.rock.residual_cohesion={c}e3", "mesh.size=12"]) for c in (75, 150, 225)),
-    ("residual cohesion 150 kPa, cells of 10 m", ["body.rock.residual_cohesion=150e3", "mesh.size=10"]),
-    ("E 2.5 GPa", ["body.rock.young_modulus=2.5e9"]),
-    ("E 10 GPa", ["body.rock.young_modulus=1e10"]),
-    ("E 5 MPa, as printed", ["body.rock.young_modulus=5e6"]),
-    ("Poisson's ratio 0.165", ["body.rock.poisson_ratio=0.165"]),
-    ("Poisson's ratio 0.45", ["body.rock.poisson_ratio=0.45"]),
-    ("dilation angle 5 degrees, residual 0", ["body.rock.dilation_angle=5", "body.rock.residual_dilation_angle=0"]),
-    ("dilation angle 10 degrees, residual 0", ["body.rock.dilation_angle=10", "body.rock.residual_dilation_angle=0"]),
-    ("water rises in half the time", times(0.5)),
-    ("water rises in twice the time", times(2)),
-    ("damping of the water stage 0.01", ["stage.water.damping=0.01"]),
-    ("damping of the water stage 0.05", ["stage.water.damping=0.05"]),
-    ("opposite slope keeps 12 degrees", ["boundary.bed.friction_angle=x > 1255 ? 12 : phi_b(t)"]),
-    ("no water on the toe", ["water.level=0", "water.excess=1000 * 9.81 * max(0, 640 + hw(t) * min(1, max(0, (1115.6 - x) / 150)) - y)"]),
-)
+def scene_text(name):
+    """A scene without snapshots, with the files that it reads by their whole paths."""
+    path = (HERE / name).resolve()
+    text = re.sub(r'"([\w./]+\.csv)"', lambda found: f'"{(path.parent / found[1]).resolve()}"', path.read_text())
+    return re.sub(r"^interval = .*$", "interval = 0", text, flags=re.M)
 
 
-COLUMNS = ("case", "ended", "failure_m", "at_30_m", "at_53_m", "at_60_m", "rest_m", "water_m_s", "P0_m", "slide_m_s", "run_out_m")
+def run(talus, variant):
+    """Runs a variant; returns its results, which live as long as their folder, and the folder."""
+    scene, keys = variant
+    made = tempfile.TemporaryDirectory()
+    folder = Path(made.name)
+    (folder / "scene.toml").write_text(scene_text(scene))
+    for name, changes in SECTIONS.items():
+        text = SECTION.read_text()
+        for old, new in changes:
+            text = re.sub(old, new, text, flags=re.M)
+        (folder / f"{name}.csv").write_text(text)
+    words = [word for key in keys for word in ("--set", re.sub(r"^mesh.section=(\w+)$", rf"mesh.section={folder}/\1.csv", key))]
+    subprocess.run([talus, "run", folder / "scene.toml", "-o", folder / "run", "--no-pictures", "--force", *words], check=True, capture_output=True)
+    return Results(folder / "run"), made
 
 
-def run(talus, name, changes, folder):
-    """One row: what the case gave, or that it broke off."""
-    out = pathlib.Path(folder) / "".join(letter for letter in name if letter.isalnum())
-    placed = callable(changes)  # writes a scene with its own mesh
-    scene, sets = (changes(talus, folder), []) if placed else (HERE / "scene.toml", [f"mesh.size={SIZE}", *changes])
-    command = [talus, "run", scene, "-o", out, "--no-pictures", *(word for each in sets for word in ("--set", each))]
-    subprocess.run(command, stdout=subprocess.DEVNULL, check=False)
-    results = Results(out)
-    row = {"case": name, "ended": "broke off" if results.broke_off() else "completed"}
-    level = measures.level_of_failure(results, "m10")
-    row["failure_m"] = f"{level:.0f}" if level == level else "none"
-    row |= {f"at_{level}_m": f"{measures.displacement_at_level(results, 'm10', level):.2f}" for level in (30, 53, 60)}
-    row["rest_m"] = f"{measures.displacement_before_slide(results, 'm10'):.1f}"
-    row["water_m_s"] = f"{measures.mean_speed_in_stage(results, 'm10', 'water'):.2f}"
-    row["P0_m"] = f"{measures.displacement_before_slide(results, 'P0'):.1f}"
-    row["slide_m_s"] = f"{measures.speed_in_stage(results, 'P0', 'slide'):.2f}"
-    return row | {"run_out_m": f"{measures.run_out(results, 'P0'):.1f}"}
+def outcomes(results):
+    """What the page compares with the paper, and where the energy of the slide went until it was fastest."""
+    def written(digits, value):
+        return f"{value:.{digits}f}" if value == value else ""
+    row = {f"at_{level}_m": written(1, measures.way_at_level(results, "P0", level)) for level in (30, 53, 60)}
+    row |= {"end_m": written(1, measures.way_before_slide(results, "P0")), "creep_m_s": written(2, measures.mean_speed_in_stage(results, "P0", "water")),
+            "left_m_s": written(2, measures.mean_speed_left(results, "P0")), "slide_m_s": written(1, measures.speed_in_stage(results, "P0", "slide")),
+            "way_m": written(0, measures.way_in_all(results, "P0"))}
+    energy = measures.energy_of_slide(results)
+    row |= {f"{name}_GJ": written(1, energy[name] / 1e9) for name in ("gravity", "water", "base", "rock", "kinetic")}
+    row |= {"yield_m": written(0, measures.level_of_yield(results)), "bank_s": written(1, measures.first_yield(results, "m13"))}
+    return row | {"drop_m": written(1, energy["drop"]), "frictionless_m_s": written(1, energy["frictionless"]), "steps": int(results.history.step[-1])}
+
+
+def study(talus, name):
+    path = HERE / f"{name}.csv"
+    rows = list(csv.DictReader(open(path))) if path.exists() else []
+    for label, variant in STUDIES[name].items():
+        if label in {r["run"] for r in rows}:
+            continue
+        results, made = run(talus, variant)
+        with made:
+            rows.append({"run": label, **outcomes(results)})
+        rows.sort(key=lambda row: list(STUDIES[name]).index(row["run"]))
+        print(label, flush=True)
+        with open(path, "w", newline="") as out:
+            writer = csv.DictWriter(out, rows[0].keys(), lineterminator="\n")
+            writer.writeheader()
+            writer.writerows(rows)
 
 
 if __name__ == "__main__":
-    table, wanted = HERE / "sensitivity.csv", sys.argv[2:]
-    rows = {}
-    if wanted and table.exists():
-        with open(table, newline="") as file:
-            rows = {row["case"]: row for row in csv.DictReader(file)}
-    with tempfile.TemporaryDirectory() as folder, ThreadPoolExecutor(2) as pool:
-        jobs = [pool.submit(run, sys.argv[1], *case, folder) for case in CASES if not wanted or case[0] in wanted]
-        for job in as_completed(jobs):
-            row = job.result()
-            rows[row["case"]] = row
-            with open(table, "w", newline="") as file:
-                writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
-                writer.writeheader(), writer.writerows(rows[name] for name, _ in CASES if name in rows)
+    for name in sys.argv[2:] or [*STUDIES, "figures"]:
+        if name == "figures":
+            import figures
+            figures.draw(sys.argv[1])
+        else:
+            study(sys.argv[1], name)

@@ -1,34 +1,32 @@
-#!/usr/bin/python3
-"""Draws the Vaiont slide from a run of its scene:  figure.py DIR [DIR_OF_5_DEGREES | --program TALUS]"""
+"""The pictures and the film of this page, from runs of the scene with a base of 0 and of 5 degrees."""
 
-import argparse
 import pathlib
+import shutil
 import subprocess
-import sys
 import tempfile
 
+import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.colors import LogNorm
+
+import measures
+import talus_style as style
+from talus_results import Results
+from talus_tiles import Frame, tiles
+from talus_views import spacing_of
 
 HERE = pathlib.Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parents[2] / "src/output/plots"))
-sys.path.insert(0, str(HERE))
-
-import matplotlib.pyplot as plt  # noqa: E402
-import measures  # noqa: E402
-from matplotlib.colors import LogNorm  # noqa: E402
-import talus_style as style  # noqa: E402
-from talus_results import Results  # noqa: E402
-from talus_views import spacing_of  # noqa: E402
-from talus_tiles import Frame, tiles  # noqa: E402
 
 BASE = np.array([(-150, 1149), (0, 1040), (550.6, 640), (1255, 640), (1755, 1030)])
 SOFTER = "functions.phi_b=[[0, 12], [150, 12], [151, 5]]"  # the base keeps 5 degrees
+FLUENT = "output.interval=0.5"  # for the film
+FILM = "plastic_strain"
 PER_SECOND = 4  # rows of the history
-LOADS = (0, 20, 30, 40, 60, 150, 155, 160, 170, 180)  # load times of the frames [s]
-FAST_LOADS = (155, 160, 170, 180)  # of those after the base has lost its friction [s]
+LOADS = (20, 40, 60, 150, 158, 166, 174, 182)  # load times of the frames [s]
+FAST_LOADS = (158, 166, 174, 182)  # of those after the base has lost its friction [s]
 STRAINS, INTACT = (1e-3, 3), "#dfe3e8"  # ends of the scale of plastic strain, and the colour of rock with less
 KINKS = ((550.6, "^", "kink below the slope"), (1255, "o", "kink at the far bank"))  # of the base, which points pass [m]
-SPANS = ((0, 20), (20, 30), (30, 40), (40, 50), (50, 60), (60, 70), (70, 80))  # load times between which the plane is looked for [s]
+SPANS = ((0, 10), (10, 20), (20, 30), (30, 40), (40, 50), (50, 60), (60, 70), (70, 80))  # load times between which the plane is looked for [s]
 
 
 def level_at(results, t):
@@ -39,12 +37,12 @@ def draw_frames(results, loads, path):
     (left, right), (low, high) = (-150, 1755), (600, 1150)
     wide, beside, title, width = 4.35, 0.25, 0.42, 9.8  # of a frame, between frames, above each, of the picture [inch]
     tall = wide * (high - low) / (right - left)
-    height = 0.1 + len(loads) // 2 * (tall + title) + 1.15
+    height = 0.05 + len(loads) // 2 * (tall + title) + 1.15
     figure = plt.figure(figsize=(width, height))
     frame, colours = Frame((left, low), (right, high), 900), {"cmap": style.colours_of("plastic_strain").with_extremes(under=INTACT), "norm": LogNorm(*STRAINS)}
     for k, t in enumerate(loads):
         row, column = divmod(k, 2)
-        axes = figure.add_axes(((0.62 + column * (wide + beside)) / width, 1 - (0.1 + (row + 1) * (tall + title)) / height, wide / width, tall / height))
+        axes = figure.add_axes(((0.62 + column * (wide + beside)) / width, 1 - (0.05 + (row + 1) * (tall + title)) / height, wide / width, tall / height))
         snapshot = measures.at_load(results, t)
         owner = tiles(snapshot.position()[:, :2], spacing_of(results), frame)
         values = np.maximum(snapshot.scalar("plastic_strain")[0], 1e-12)
@@ -70,7 +68,7 @@ def draw_motion(results, softer, path):
     figure.subplots_adjust(left=0.05, right=0.99, bottom=0.15, top=0.9, wspace=0.2)
     wet = np.array(results.history.stage) == "water"
     load = results.history.columns["load_time_s"][wet]
-    for point, label, line in (("m10", "middle of the lower part (10)", "-"), ("P0", "P0, at the edge of the front", ":")):
+    for point, label, line in (("m9", "middle of the lower part (9)", "-"), ("P0", "P0, at the edge of the front", ":")):
         moved = np.linalg.norm(measures.way(results, point), axis=0)[wet]
         rise.plot(load, moved, line, label=label)
         slow.plot(moved, measures.mean_speed(results, point)[wet], line, label=label)
@@ -90,7 +88,7 @@ def draw_motion(results, softer, path):
         if run is None:
             continue
         rows = np.array(run.history.stage) == "slide"
-        slide.plot(measures.way(run, "m10")[0, rows], measures.mean_speed(run, "m10")[rows], color=colour, label=label + ", middle")
+        slide.plot(measures.way(run, "m9")[0, rows], measures.mean_speed(run, "m9")[rows], color=colour, label=label + ", middle")
         slide.plot(measures.way(run, "P0")[0, rows], run.history.columns["P0_velocity_m_s"][rows], color=colour, linestyle=":", label=label + ", P0")
     slide.plot([490], [0], "o", color="black"), slide.plot([225, 560], [25, 25], color="black", linewidth=0.7, linestyle=":")
     slide.annotate("paper, base 0°: 25 m/s, 490 m", (490, 25), ha="right", va="bottom", size=8.5)
@@ -112,10 +110,10 @@ def along_plane(results, snapshot, angle, height, half_width=15.0):
 def draw_plane(results, path):
     """Mobilised friction along the plane over load time, and how the plane turns."""
     figure, (map_, turn) = plt.subplots(1, 2, figsize=(9.6, 4.0), width_ratios=(1.2, 1))
-    figure.subplots_adjust(left=0.065, right=0.985, bottom=0.125, top=0.86, wspace=0.22)
+    figure.subplots_adjust(left=0.065, right=0.985, bottom=0.125, top=0.9, wspace=0.22)
     loads, height = np.arange(0, 81, 2.0), np.arange(0, 246, 17.5)
-    middle, strain = [sum(span) / 2 for span in SPANS], [measures.plane_of_strain(results, *span)[0] for span in SPANS]
-    friction = np.array([along_plane(results, measures.at_load(results, t), np.interp(t, middle, strain), height) for t in loads]).T
+    middle, turned = [sum(span) / 2 for span in SPANS], [measures.plane_of_motion(results, *span) for span in SPANS]
+    friction = np.array([along_plane(results, measures.at_load(results, t), np.interp(t, middle, turned), height) for t in loads]).T
     picture = map_.pcolormesh(np.append(loads - 1, loads[-1] + 1), height, friction, cmap="viridis", vmin=20, vmax=42)
     for level in (30, 53, 57, 60):
         t = np.interp(level, *np.array(results.scene["functions"]["hw"], float).T[::-1])
@@ -124,12 +122,25 @@ def draw_plane(results, path):
     map_.annotate("m of water", (64, 247), va="bottom", size=8, annotation_clip=False)
     map_.set(xlabel="load time [s]", ylabel="distance from the kink along the plane [m]", xlim=(0, 80), ylim=(0, 245))
     figure.colorbar(picture, ax=map_, extend="both", label="mobilised friction [deg]").outline.set_visible(False)
-    turn.plot(middle, [measures.plane_of_motion(results, *span) for span in SPANS], "o-", label="from the velocities of both parts")
-    turn.plot(middle, strain, "s--", label="line through the growing plastic strain")
-    turn.axhline(108, color="black", linewidth=0.7, linestyle=":"), turn.annotate("bisector", (1, 108.5), size=8.5)
-    turn.axhline(90, color="grey", linewidth=0.7, linestyle=":"), turn.annotate("vertical", (1, 90.5), size=8.5, color="grey")
-    turn.set(xlabel="load time [s]", ylabel="inclination from the uphill level [deg]", xlim=(0, 80), ylim=(70, 118))
-    turn.legend(frameon=False, loc="lower left", bbox_to_anchor=(-0.02, 1.0), borderaxespad=0.2, fontsize=8)  # above, where no curve runs
+    turn.plot(middle, turned, "o-")
+    turn.axhline(108, color="black", linewidth=0.7, linestyle=":"), turn.annotate("bisector", (79, 108.3), ha="right", size=8.5)
+    turn.axhline(90, color="grey", linewidth=0.7, linestyle=":"), turn.annotate("vertical", (79, 90.3), ha="right", size=8.5, color="grey")
+    turn.set(xlabel="load time [s]", ylabel="inclination of the plane from the uphill level [deg]", xlim=(0, 80), ylim=(70, 118))
+    style.save(figure, path)
+
+
+def draw_gravity(results, path):
+    """Plastic strain after gravity around the kink."""
+    start, (low, high) = measures.at_load(results, 0), ((330, 640), (770, 960))
+    frame = Frame(low, high, 800)
+    owner = tiles(start.position()[:, :2], spacing_of(results), frame)
+    values = np.maximum(start.scalar("plastic_strain")[0], 1e-12)
+    figure, axes = plt.subplots(figsize=(6.4, 4.4), layout="constrained")
+    picture = axes.imshow(np.ma.array(values[np.maximum(owner, 0)], mask=owner < 0), origin="lower", extent=frame.extent(), interpolation="nearest",
+                          cmap=style.colours_of("plastic_strain").with_extremes(under=INTACT), norm=LogNorm(1e-5, 1e-2))
+    axes.plot(*BASE.T, color=style.INK, linewidth=1)
+    axes.set(xlim=(low[0], high[0]), ylim=(low[1] - 5, high[1]), xlabel="x [m]", ylabel="elevation [m]")
+    figure.colorbar(picture, ax=axes, extend="both", label="plastic strain after gravity; grey: less").outline.set_visible(False)
     style.save(figure, path)
 
 
@@ -160,21 +171,21 @@ def draw_points(results, path):
     style.save(figure, path)
 
 
-if __name__ == "__main__":
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("run", help="folder of a run of scene.toml")
-    parser.add_argument("softer", nargs="?", help="folder of a run with a base of 5 degrees")
-    parser.add_argument("--program", metavar="TALUS", help="make that run with this program")
-    arguments = parser.parse_args()
-    run = Results(arguments.run)
-    with tempfile.TemporaryDirectory() as folder:
-        if arguments.program:
-            arguments.softer = folder
-            subprocess.run([arguments.program, "run", HERE / "scene.toml", "-o", folder, "--force", "--no-pictures", "--set", SOFTER], check=True)
-        softer = Results(arguments.softer) if arguments.softer else None
-        draw_motion(run, softer, HERE / "motion.png")
-        if softer:
-            draw_frames(softer, FAST_LOADS, HERE / "frames_5.png")
-    draw_frames(run, LOADS, HERE / "frames.png")
-    draw_plane(run, HERE / "plane.png")
-    draw_points(run, HERE / "friction.png")
+def draw(talus, folder=None, softer=None):
+    """Runs the scene with both bases, or reads the results in `folder` and `softer`, and draws all."""
+    with tempfile.TemporaryDirectory() as made:
+        if folder is None:
+            folder = f"{made}/0"
+            subprocess.run([talus, "run", HERE / "scene.toml", "-o", folder, "--no-pictures", "--set", FLUENT], check=True)
+        if softer is None:
+            softer = f"{made}/5"
+            subprocess.run([talus, "run", HERE / "scene.toml", "-o", softer, "--no-pictures", "--set", SOFTER], check=True)
+        subprocess.run([talus, "plot", folder, "--movie", "--fields", FILM], check=True)
+        shutil.copy(f"{folder}/pictures/movie_{FILM}.gif", HERE / "slide.gif")
+        results, slower = Results(folder), Results(softer)
+        draw_frames(results, LOADS, HERE / "frames.png")
+        draw_frames(slower, FAST_LOADS, HERE / "frames_5.png")
+        draw_motion(results, slower, HERE / "motion.png")
+        draw_plane(results, HERE / "plane.png")
+        draw_gravity(results, HERE / "gravity.png")
+        draw_points(results, HERE / "friction.png")
