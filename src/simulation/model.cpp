@@ -72,6 +72,25 @@ Json list(const Values &values, const ToJson &to_json) {
   return all;
 }
 
+std::string text_of(const Json &json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
+/// The same as text: cells and faces are many, and as JSON values each takes four times as much.
+template <class Values, class ToJson>
+std::string text_of(const Values &values, const ToJson &to_json) {
+  std::string all = "[";
+  for (const auto &value : values) {
+    if (all.size() > 1) all += ',';
+    all += text_of(to_json(value));
+  }
+  return all + ']';
+}
+
+/// The text of an object with one more entry, which is text itself.
+std::string with_entry(std::string object, const char *key, const std::string &value) {
+  object.back() = ',';
+  return object + '"' + key + "\":" + value + '}';
+}
+
 template <int dim>
 std::vector<Vec<dim>> corners(const Piece<dim> &piece, int count) {
   return {piece.corner.begin(), piece.corner.begin() + count};
@@ -132,15 +151,15 @@ class Model {
     all["scene"] = scene_.root ? scene_.root->values() : scene_.source;
     all["keys"] = units();
     all["bodies"] = bodies();
-    all["cells"] = cells();
-    all["boundaries"] = boundaries();
     all["water"]["tables"] = water_tables();
     all["water"]["line"] = line_of_no_pressure();
     all["water"]["surface"] = water_surface();
     all["stages"] = list(scene_.stage, [&](Stage stage) { return stage_of(stage); });
     all["points"] = list(scene_.output.point, point);
     all["lines"] = list(scene_.output.line, line);
-    return rank_in(world_.comm) == 0 ? all.dump(-1, ' ', false, Json::error_handler_t::replace) : "";
+    const std::string cells = this->cells(), boundaries = this->boundaries();
+    if (rank_in(world_.comm) > 0) return "";
+    return with_entry(with_entry(text_of(all), "cells", cells), "boundaries", boundaries);
   }
 
  private:
@@ -155,7 +174,7 @@ class Model {
     return all;
   }
 
-  Json cells() const {
+  std::string cells() const {
     std::vector<Piece<dim>> mine;
     if constexpr (dim == 2) {
       for (int c = 0; c < world_.mesh.cell_count(); ++c) {
@@ -167,7 +186,7 @@ class Model {
     } else if (rank_in(world_.comm) == 0) {  // has the surface of all ranks
       for (const SoilFace &face : surface_) mine.push_back(piece_of(face));
     }
-    return list(gathered(world_.comm, mine), [](const Piece<dim> &cell) {
+    return text_of(gathered(world_.comm, mine), [](const Piece<dim> &cell) {
       return Json{{"corners", corners(cell, 3)}, {"normal", cell.normal}, {"body", cell.body}};
     });
   }
@@ -180,7 +199,7 @@ class Model {
     return piece;
   }
 
-  Json boundaries() const {
+  std::string boundaries() const {
     std::vector<const Source *> sources;
     for (const std::vector<Source> *some : {&world_.conditions.sources(), &world_.seepage_sources})
       for (const Source &source : *some) sources.push_back(&source);
@@ -215,9 +234,9 @@ class Model {
     all = in_order(all);
     std::vector<std::vector<Piece<dim>>> faces(sources.size());
     for (const Piece<dim> &piece : all) faces[piece.source].push_back(piece);
-    Json found = Json::array();
-    for (std::size_t s = 0; s < sources.size(); ++s) found.push_back(boundary(*sources[s], faces[s]));
-    return found;
+    std::string found = "[";
+    for (std::size_t s = 0; s < sources.size(); ++s) found += (s ? "," : "") + boundary(*sources[s], faces[s]);
+    return found + ']';
   }
 
   /// Least and largest value of what a boundary prescribes.
@@ -243,14 +262,14 @@ class Model {
     std::map<std::string, Span> found_;
   };
 
-  Json boundary(const Source &source, const std::vector<Piece<dim>> &faces) const {
+  std::string boundary(const Source &source, const std::vector<Piece<dim>> &faces) const {
     const Boundary &kind = source.kind;
     const OnSoil action = kind.in_motion != OnSoil::none ? kind.in_motion : kind.quasi_static;
     constexpr const char *water[] = {"surface", "wall", "pressure", "seepage", "flux", "outflow"};
     constexpr const char *gas[] = {"surface", "wall", "atmosphere", "pressure"};
     Values values;
     double level = std::numeric_limits<double>::quiet_NaN();
-    Json drawn = list(faces, [&](const Piece<dim> &face) {
+    const std::string drawn = text_of(faces, [&](const Piece<dim> &face) {
       Vec<dim> centre{}, vector{};
       for (int a = 0; a < dim; ++a)
         for (int d = 0; d < dim; ++d) centre[d] += face.corner[a][d] / dim;
@@ -266,15 +285,15 @@ class Model {
       return Json{
           {"corners", corners(face, dim)}, {"normal", face.normal}, {"soil", face.body >= 0}, {"vector", vector}};
     });
-    return {{"name", source.name},
-            {"groups", source.groups},
-            {"soil", action_on_soil(action, kind.template on_soil<dim>())},
-            {"water", water[static_cast<int>(kind.water)]},
-            {"gas", gas[static_cast<int>(kind.gas)]},
-            {"changes", !kind.changes.empty()},
-            {"values", values.json()},
-            {"level", level},
-            {"faces", std::move(drawn)}};
+    const Json found{{"name", source.name},
+                     {"groups", source.groups},
+                     {"soil", action_on_soil(action, kind.template on_soil<dim>())},
+                     {"water", water[static_cast<int>(kind.water)]},
+                     {"gas", gas[static_cast<int>(kind.gas)]},
+                     {"changes", !kind.changes.empty()},
+                     {"values", values.json()},
+                     {"level", level}};
+    return with_entry(text_of(found), "faces", drawn);
   }
 
   /// Load [Pa] or velocity [m/s] at a place of a face at the start; `values` takes what the boundary prescribes there.
