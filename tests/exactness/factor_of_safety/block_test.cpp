@@ -265,7 +265,7 @@ TEST(Block, fails_before_small_steps_are_tried) {
   EXPECT_EQ(factor.lost_stages.size(), 1);
   expect_holds(factor, 28. / 30);
   const std::string log = read_file(options.directory + "/run.log");
-  EXPECT_NE(log.find("a mechanism of failure was found under all of them, even with psi = phi"), std::string::npos)
+  EXPECT_NE(log.find("a mechanism of failure was found under all of its loads, even with psi = phi"), std::string::npos)
       << log;
   const std::string warning = "stage load found no equilibrium, so the search";
   EXPECT_EQ(log.find(warning), log.rfind(warning)) << "said once";
