@@ -458,6 +458,17 @@ double PoreFlow<dim>::pressure_at(int cell, const Barycentric<dim> &l) const {
   return p;
 }
 template <int dim>
+double PoreFlow<dim>::pressure_on_faces(int cell, const Barycentric<dim> &l) const {
+  constexpr double beside = 1e-9;  // of the height of the cell, by round-off
+  double p = 0;
+  for (int a = 0; a <= dim; ++a) {
+    const int node = nodes_.of_cell(cell)[a];
+    if (l[a] > beside && !layered_[node] && !fixed_[node]) return pressure_at(cell, l);
+    if (l[a] > beside) p += l[a] * (layered_[node] ? beyond_[node] : pressure[node]);
+  }
+  return p;
+}
+template <int dim>
 double PoreFlow<dim>::saturation(int cell, const Barycentric<dim> &l) const {
   return saturation_of(body_of_[cell], pressure_at(cell, l));
 }

@@ -70,6 +70,8 @@ class PoreFlow {
 
   // Fields of the present trial state, linear between the vertices of a cell.
   double pressure_at(int cell, const Barycentric<dim> &l) const;
+  /// The same, and on a face beneath which a layer thinner than the cells drains the pressure beyond it, for results.
+  double pressure_on_faces(int cell, const Barycentric<dim> &l) const;
   /// Pressure of the pores in the total stress [Pa], docs/theory/pores.md (4.2), and its derivative with pressure.
   double stress_pressure(int cell, const Barycentric<dim> &l) const;
   double stress_pressure_slope(int cell, const Barycentric<dim> &l) const;

@@ -9,6 +9,7 @@
 #include "physics/boundary/boundary.h"
 #include "physics/pores/hyperbolicity.h"
 #include "scene/reader.h"
+#include "scene/stress_at_rest.h"
 
 namespace talus {
 namespace {
@@ -209,7 +210,9 @@ class Adviser {
     const bool by_weight = std::any_of(scene_.stage.begin(), scene_.stage.end(), [](const Stage &s) {
       return s.kind == StageKind::quasi_static && s.initial_stress == InitialStress::kept;
     });
-    if (!by_weight || !std::holds_alternative<MohrCoulomb>(b.law) || needs_.gravity == 0) return;
+    if (!by_weight || begins_at_rest(scene_, b.body.name) || !std::holds_alternative<MohrCoulomb>(b.law) ||
+        needs_.gravity == 0)
+      return;
     const double phi = b.body.strength.friction_angle[0];  // the least asks for most
     const double K = bulk_modulus(b.law), G = shear_modulus(b.law), nu = (3 * K - 2 * G) / (2 * (3 * K + G));
     if (std::sin(phi) >= 1 - 2 * nu || phi == 0) return;

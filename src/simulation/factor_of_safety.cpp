@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "scene/stress_at_rest.h"
 #include "simulation/search_region.h"
 #include "simulation/simulation_impl.h"
 
@@ -48,6 +49,7 @@ template <int dim>
 void note_yielding_ground(const World<dim> &world, Recorder<dim> &recorder) {
   for (size_t b = 0; b < world.laws.size(); ++b) {
     const BodySource &body = world.scene.body[b];
+    if (begins_at_rest(world.scene, body.name)) continue;
     const double nu = poisson_ratio(world.laws[b]);
     const double phi = world.strength[b].friction_angle[0];  // the least asks for most
     if (phi > 0 && std::sin(phi) < 1 - 2 * nu)

@@ -357,7 +357,7 @@ std::optional<ParticleState<dim>> Statics<dim>::state_at(const Vec<dim> &x) cons
   state.history.resize(world_.bodies[state.body]->history_count());
   if (world_.phases.prescribed) state.pore_pressure = world_.pressure(x, clock_.load_time, state.body);
   if (world_.phases.liquid) {
-    state.pore_pressure = flow_->pressure_at(cell, l), state.saturation = flow_->saturation(cell, l);
+    state.pore_pressure = flow_->pressure_on_faces(cell, l), state.saturation = flow_->saturation(cell, l);
     state.suction = std::max(0., -state.pore_pressure);
   }
   const Law &law = world_.bodies[state.body]->law();

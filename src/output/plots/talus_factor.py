@@ -52,8 +52,9 @@ def factor_lines(factor):
         other = "undrained" if not undrained else "own" if "own" in factor["by_flow"] else "associated"
         lines.append(f"Factor of safety, {WATER[not undrained]}: {in_words(factor['by_flow'][other])}.")
     if "own" in factor["by_flow"]:
+        of = f" of the factor {WATER[False]}" if "undrained" in factor["by_flow"] else ""
         lines.append("Some soil has psi < phi, whose factor scatters with mesh and initial stress. "
-                     f"Upper bound, psi = phi as limit equilibrium assumes: {in_words(factor['by_flow']['associated'])}. "
+                     f"Upper bound{of}, psi = phi as limit equilibrium assumes: {in_words(factor['by_flow']['associated'])}. "
                      f"Lower estimate, strength of Davis (1968): {in_words(factor['by_flow']['davis'])}.")
     for number, mechanism in enumerate(factor["mechanisms"][1:], 2):
         lines.append(f"Mechanism {number}, from x = {mechanism['low_m'][0]:.4g} to {mechanism['high_m'][0]:.4g} m, which moves "

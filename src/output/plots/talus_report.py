@@ -155,8 +155,8 @@ def ends_of(bracket):
 
 
 def bounds(factor):
-    """What psi < phi leaves open, in words; empty where psi = phi."""
-    if "own" not in factor["by_flow"]:
+    """What psi < phi leaves open, in words; empty where psi = phi, and of the factor without flow of pore water: the bounds are of held pressure."""
+    if "own" not in factor["by_flow"] or factor["flow"] == "undrained":
         return ""
     return f"; soil with psi < phi: lower estimate {short(factor['by_flow']['davis'])} (strength of Davis), upper bound {short(factor['by_flow']['associated'])} (psi = phi)"
 

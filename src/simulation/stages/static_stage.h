@@ -6,7 +6,9 @@
 #include <limits>
 #include <sstream>
 
+#include "base/rounded.h"
 #include "scene/reader.h"
+#include "simulation/changing_loads.h"
 #include "simulation/softening.h"
 #include "simulation/stages/stage_runner.h"
 
@@ -81,6 +83,13 @@ class StaticStage : public StageRunner<dim> {
   const Stage &stage_;
 
  private:
+  /// Do loads come as functions of time or at once, so that a share of the path is none of them?
+  bool loads_in_time() const {
+    const double begin = load_at(0), end = load_at(1);
+    return water_flows() || std::ranges::any_of(changing_loads(run_.scene), [&](const ChangingLoad &load) {
+             return std::ranges::any_of(load.when, [&](const TimeSpan &s) { return s.begin < end && s.end > begin; });
+           });
+  }
   bool sets_pressure() const { return run_.world.phases.prescribed && water_flows(); }
 
   void begin() {
@@ -154,9 +163,16 @@ class StaticStage : public StageRunner<dim> {
     if (path_.last.stopped) throw RunFailure("interrupted");
     if (lost) {
       text << (soil_moves() ? "no equilibrium beyond " : "no flow was found beyond ") << 100 * path_.share
-           << " % of the " << (soil_moves() ? "loads" : "duration") << " of stage " << stage_.name << ": "
+           << " % of the "
+           << (!soil_moves()     ? "duration"
+               : loads_in_time() ? "time"
+                                 : "loads")
+           << " of stage " << stage_.name;
+      if (soil_moves() && loads_in_time())
+        text << " (" << rounded(path_.share * stage_.duration) << " s of " << rounded(stage_.duration) << " s)";
+      text << ": "
            << (path_.last.undrained ? "the soil fails before its pore water can flow"
-               : path_.last.fails   ? "a mechanism of failure was found under all of them, even with psi = phi"
+               : path_.last.fails   ? "a mechanism of failure was found under all of its loads, even with psi = phi"
                : path_.last.crawl > 0
                    ? "steps became as short as " + rounded(path_.last.crawl) + " s, in which no water drains"
                : path_.last.dry  ? "more water is drawn from the soil than it can give: suction passed 1 GPa, at which "

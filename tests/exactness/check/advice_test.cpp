@@ -73,6 +73,17 @@ TEST(NoAdvice, IsGivenWhereAllIsWell) {
   EXPECT_TRUE(ending.says("\"advice\": []")) << ending.output;
 }
 
+/// Ground whose stress begins at rest has the lateral stress of k0, whatever nu is.
+TEST(NoAdvice, OnTheLateralStressOfElasticGroundIsGivenWhereItIsThatOfK0) {
+  const Folder folder;
+  for (const std::string begins : {"kept", "k0"}) {
+    const Ending ending = check(folder, {"body.sand.poisson_ratio=0.2",
+                                         "stage=[{name='ground', kind='quasi_static', duration=1, initial_stress='" +
+                                             begins + "'}, {name='load', kind='quasi_static', duration=1}]"});
+    EXPECT_EQ(ending.says("has the lateral stress ratio nu / (1 - nu)"), begins == "kept") << ending.output;
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(All, Advice, testing::ValuesIn(cases), [](const auto &one) { return one.param.name; });
 
 }  // namespace

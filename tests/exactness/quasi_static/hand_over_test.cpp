@@ -15,6 +15,7 @@ TEST(QuasiStatic, motion_takes_over_where_equilibrium_is_lost) {
   const auto time = solved.history.column("load_time_s"), speed = solved.history.column("corner_velocity_m_s");
   ASSERT_FALSE(solved.events.empty());
   EXPECT_NE(solved.events[0].text.find("no equilibrium beyond"), std::string::npos) << solved.events[0].text;
+  EXPECT_NE(solved.events[0].text.find(" % of the time of stage load (0."), std::string::npos) << "not of its loads";
   EXPECT_GT(solved.events[0].load_time,
             20e3 / 60e3 - 1e-3);  // 2 c is the least that a block can bear, found to the smallest step
   EXPECT_LT(solved.events[0].load_time, 30e3 / 60e3);

@@ -11,7 +11,7 @@ import numpy as np
 
 sys.path.insert(0, sys.argv.pop())
 import talus_factor  # noqa: E402
-from talus_report import key_results  # noqa: E402
+from talus_report import bounds, key_results  # noqa: E402
 from talus_results import MECHANISM, Results  # noqa: E402
 
 BRACKET = {"decided": True, "value": 1.074, "equilibrium": 1.072, "mechanism": 1.076}
@@ -62,6 +62,16 @@ class Doubts(unittest.TestCase):
                 cards = {what: (number, note) for what, number, note in key_results(results)}
             self.assertEqual(cards["State before the strength is reduced"][0], "no equilibrium" if lost else "stands")
             self.assertEqual("stage gravity found no equilibrium" in cards["State before the strength is reduced"][1], bool(lost))
+
+    def test_bounds_stand_beside_the_factor_that_they_bound(self):
+        bracket = {flow: BRACKET | {"value": value} for flow, value in (("own", 1.472), ("davis", 1.436), ("associated", 1.491), ("undrained", 1.292))}
+        drained = {flow: found for flow, found in bracket.items() if flow != "undrained"}
+        for critical, by_flow, said, of in (("undrained", bracket, False, True), ("own", bracket, True, True), ("own", drained, True, False)):
+            factor = {"factor_of_safety": bracket[critical], "flow": critical, "by_flow": by_flow, "mechanisms": [{}], "stages_without_equilibrium": ()}
+            self.assertEqual(bounds(factor) != "", said)
+            lines = talus_factor.factor_lines(factor)
+            self.assertEqual("psi = phi as limit equilibrium assumes: 1.491" in lines[-1], True)
+            self.assertEqual("bound of the factor with the pore pressure of the stage held, psi = phi" in lines[-1], of)
 
     def test_an_equilibrium_that_moved_further_than_the_soil_is_high_is_doubted(self):
         for way, doubted in ((3.5, False), (23.65, True)):
