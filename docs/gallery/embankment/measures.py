@@ -67,7 +67,7 @@ def part_of_the_slide(results, point, part, slow=0.1, fast=0.8):
     if part == "faster":
         return float(time[quick[0]] - time[np.flatnonzero(share[:quick[0]] < slow)[-1]])
     ends = quick[-1] + np.flatnonzero(share[quick[-1]:] < slow)
-    return float((time[ends[0]] if len(ends) else time[-1]) - time[quick[-1]])
+    return float(time[ends[0]] - time[quick[-1]]) if len(ends) else np.nan  # it moves to the end
 
 
 def largest_acceleration(results, point):

@@ -26,7 +26,7 @@ from talus_results import Results  # noqa: E402
 CREST, BASE, HEIGHT, BEYOND = 15.0, 5.0, 10.0, 15.0  # width of the crest, depth of the ground, height of the slope, level ground in front of it [m]
 POINTS = {"S1": (0.4, 0.2), "D1": (2.0, 1.7), "S2": (None, 0.3), "D2": (None, 1.2)}  # from the toe up the face (None: mid-height), depth below it [m]
 
-PAPER = ("body.soil.permeability=1e-10", "water.bulk_modulus=100e6", "stage.rain.duration=400")  # wetting takes ten times as long
+PAPER = ("body.soil.permeability=1e-10", "water.bulk_modulus=100e6", "stage.rain.duration=400", "output.history_interval=0.25")  # wetting takes ten times as long
 GAS = ("phases=three-phase", "body.soil.gas_permeability=1e-10", "gas.bulk_modulus=1e4", "gas.density=1", "gas.viscosity=1e-6")  # Table 3, as permeable as raised
 SLICE = ("dimension=3", "boundary.front.kind=roller", "boundary.back.kind=roller")  # as --slice
 UNTIL_REST = "stage.rain.duration=60"  # the first slide is over by then
