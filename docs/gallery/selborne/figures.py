@@ -10,11 +10,10 @@ import numpy as np
 import talus_style as style
 from talus_lines import dimensionless, means
 from talus_results import Results
-from talus_slip import draw_slip_surface
 from talus_style import plt
 
 HERE = Path(__file__).resolve().parent
-COPIED = {"plastic_strain_large": "slide", "displacement_large": "run_out"}
+COPIED = {"plastic_strain_large": "slide"}
 POINTS = ("crest", "upper", "lower", "toe")
 FROM_FIRST_YIELD = (0.6, 1.06)  # t* that the states of the slip surface are shown for
 FROM_START = (0, 1.06)  # and its mean friction
@@ -34,8 +33,6 @@ def draw(talus, folder=None, moving=None):
         results = Results(folder)
         for source, name in COPIED.items():
             shutil.copy(f"{folder}/pictures/{source}.png", HERE / f"{name}.png")
-        [(_, surface)] = draw_slip_surface(results, Path(folder) / "pictures")
-        shutil.copy(surface, HERE / "failure.png")
         history, relative = history_of(folder)
         draw_motion(history, relative)
         draw_strength(results.lines()["contact"], results)

@@ -20,8 +20,8 @@ from talus_results import Results  # noqa: E402
 
 BED = "boundary.bed."
 CASES = (
-    ("as heated.toml", []),
-    ("cells of 12 m", ["mesh.size=12"]),
+    ("cells of 15 m", []),
+    ("as heated.toml, cells of 12 m", ["mesh.size=12"]),
     ("heat without expansion", [BED + "thermal_pressurisation=0"]),
     ("thickness 1.4 mm", [BED + "thickness=1.4e-3"]),
     ("thickness 10 cm", [BED + "thickness=0.1"]),
