@@ -48,8 +48,8 @@ The table at the head of a page compares with a reference. A row names a number 
     is = "same within 1 %"                        # same, chosen, fitted, differs: why
 
 The tables stand in README.md or in another page (.md) of the folder between the lines `<!-- verdict -->`, `<!-- numbers -->`, `<!-- studies -->` (a list
-of them) or `<!-- sizes: crest -->` (a table of a study), and `<!-- end -->`. Between `<!-- file: crack.toml -->` and `<!-- end -->` a page shows that file
-of its folder.
+of them, which a page may leave to --list unless one is unchecked) or `<!-- sizes: crest -->` (a table of a study), and `<!-- end -->`. Between
+`<!-- file: crack.toml -->` and `<!-- end -->` a page shows that file of its folder.
 """
 
 import talus_interrupt  # noqa: F401  before all that takes time
@@ -144,6 +144,8 @@ class Page:
             pattern = rf"<!-- {re.escape(marker)} -->\n.*?<!-- end -->"
             places = [file for file, text in texts.items() if re.search(pattern, text, flags=re.S)]
             if not places:
+                if marker == "studies" and not any("unchecked" in study for study in self.studies.values()):
+                    continue
                 raise ValueError(f"{self.readme} and the pages beside it have no line <!-- {marker} --> with <!-- end --> after its table")
             block = "\n".join([f"<!-- {marker} -->", *lines, "<!-- end -->"])
             for file in places:
