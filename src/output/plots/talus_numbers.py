@@ -33,7 +33,7 @@ pictures from there:
     compare = {crest_m = 0.05}
     because = "..."
     tables = [{name = "crest", rows = ["eta"], column = "size_m", value = "crest_m", digits = 1}]   # tables of the page, made from the file;
-                                     # digits may be "as written" there; without = {column = "value"} leaves rows out; {name = "printed", text = "sizes.txt"} shows a file that the study
+                                     # digits may be "as written" there; without = {column = ["value"]} leaves rows out; {name = "printed", text = "sizes.txt"} shows a file that the study
                                      # writes beside the page as it is
 
 A page with `model = "scene.toml"` at the head of its file shows what that scene models in a picture model.png, which --write draws again; it carries the
@@ -266,7 +266,7 @@ def table_of_studies(studies):
 def table_of_study(path, wanted, study):
     """A CSV as a table: one line for each combination of the columns `rows`, one column for each value of `column`."""
     with open(path, newline="") as file:
-        rows = [row for row in csv.DictReader(file) if not any(row[column] == value for column, value in wanted.get("without", {}).items())]
+        rows = [row for row in csv.DictReader(file) if not any(row[column] in values for column, values in wanted.get("without", {}).items())]
     heads, across = wanted["rows"], wanted.get("column")
     columns = list(dict.fromkeys(row[across] for row in rows)) if across else wanted["values"]
     lines = {}

@@ -144,15 +144,16 @@ is = "chosen"
         with tempfile.TemporaryDirectory() as name:
             page = pathlib.Path(name) / "docs" / "gallery" / "small"
             page.mkdir(parents=True)
-            (page / "numbers.toml").write_text(NUMBERS + 'tables = [{name = "crest", rows = ["size_m"], values = ["crest_m"], without = {size_m = "1"}}]\n'
+            (page / "numbers.toml").write_text(NUMBERS + 'tables = [{name = "crest", rows = ["size_m"], values = ["crest_m"], without = {size_m = ["1", "2"]}}]\n'
                                                + NUMBERS.split("\n\n")[0].replace("slow", "other").replace("the scene", "listed = no").replace(
                                                    'cost =', 'listed = false\ncost =') + "\n")
-            (page / "sizes.csv").write_text("size_m,crest_m\n1,2\n3,4\n")
+            (page / "sizes.csv").write_text("size_m,crest_m\n1,2\n2,3\n3,4\n")
             (page / "README.md").write_text("".join(f"<!-- {marker} -->\n<!-- end -->\n" for marker in ("numbers", "studies", "sizes: crest")))
             subprocess.run([sys.executable, "-B", SCRIPT, page.parent, "/bin/false", "--pages", "--write"], check=True, stdout=subprocess.DEVNULL)
             text = (page / "README.md").read_text()
             self.assertIn("| 3 | 4 |", text)
             self.assertNotIn("| 1 | 2 |", text)
+            self.assertNotIn("| 2 | 3 |", text)
             self.assertNotIn("listed = no", text)
             told = subprocess.run([sys.executable, "-B", SCRIPT, page.parent, "/bin/false", "--list"], capture_output=True, text=True)
             self.assertIn("listed = no", told.stdout)
