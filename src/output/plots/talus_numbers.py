@@ -33,7 +33,7 @@ pictures from there:
     compare = {crest_m = 0.05}
     because = "..."
     tables = [{name = "crest", rows = ["eta"], column = "size_m", value = "crest_m", digits = 1}]   # tables of the page, made from the file;
-                                     # digits may be "as written" there; without = {column = "value"} leaves rows out; {name = "printed", text = "sizes.txt"} shows a file that the study
+                                     # digits may be "as written" there; without = {column = ["value"]} leaves rows out; {name = "printed", text = "sizes.txt"} shows a file that the study
                                      # writes beside the page as it is
 
 A page with `model = "scene.toml"` at the head of its file shows what that scene models in a picture model.png, which --write draws again; it carries the
@@ -48,8 +48,8 @@ The table at the head of a page compares with a reference. A row names a number 
     is = "same within 1 %"                        # same, chosen, fitted, differs: why
 
 The tables stand in README.md or in another page (.md) of the folder between the lines `<!-- verdict -->`, `<!-- numbers -->`, `<!-- studies -->` (a list
-of them) or `<!-- sizes: crest -->` (a table of a study), and `<!-- end -->`. Between `<!-- file: crack.toml -->` and `<!-- end -->` a page shows that file
-of its folder.
+of them, which a page may leave to --list unless one is unchecked) or `<!-- sizes: crest -->` (a table of a study), and `<!-- end -->`. Between
+`<!-- file: crack.toml -->` and `<!-- end -->` a page shows that file of its folder.
 """
 
 import talus_interrupt  # noqa: F401  before all that takes time
@@ -144,6 +144,8 @@ class Page:
             pattern = rf"<!-- {re.escape(marker)} -->\n.*?<!-- end -->"
             places = [file for file, text in texts.items() if re.search(pattern, text, flags=re.S)]
             if not places:
+                if marker == "studies" and not any("unchecked" in study for study in self.studies.values()):
+                    continue
                 raise ValueError(f"{self.readme} and the pages beside it have no line <!-- {marker} --> with <!-- end --> after its table")
             block = "\n".join([f"<!-- {marker} -->", *lines, "<!-- end -->"])
             for file in places:
@@ -264,7 +266,7 @@ def table_of_studies(studies):
 def table_of_study(path, wanted, study):
     """A CSV as a table: one line for each combination of the columns `rows`, one column for each value of `column`."""
     with open(path, newline="") as file:
-        rows = [row for row in csv.DictReader(file) if not any(row[column] == value for column, value in wanted.get("without", {}).items())]
+        rows = [row for row in csv.DictReader(file) if not any(row[column] in values for column, values in wanted.get("without", {}).items())]
     heads, across = wanted["rows"], wanted.get("column")
     columns = list(dict.fromkeys(row[across] for row in rows)) if across else wanted["values"]
     lines = {}

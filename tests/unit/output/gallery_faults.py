@@ -128,19 +128,32 @@ is = "chosen"
             self.assertEqual(told.returncode, 1)
             self.assertIn("tables of runs.md are not made from its numbers.toml", told.stdout)
 
+    def test_a_page_may_leave_out_its_studies_unless_one_is_unchecked(self):
+        with tempfile.TemporaryDirectory() as name:
+            page = pathlib.Path(name) / "docs" / "gallery" / "small"
+            page.mkdir(parents=True)
+            (page / "sizes.csv").write_text("size_m,crest_m\n1,2\n")
+            (page / "README.md").write_text("<!-- numbers -->\n<!-- end -->\n")
+            for study, status in ((NUMBERS, 0), (NUMBERS.replace("[study.sizes]", '[study.sizes]\nunchecked = "takes a day"'), 1)):
+                (page / "numbers.toml").write_text(study)
+                told = subprocess.run([sys.executable, "-B", SCRIPT, page.parent, "/bin/false", "--pages", "--write"], capture_output=True, text=True)
+                self.assertEqual(told.returncode, status, told.stdout)
+                self.assertEqual("no line <!-- studies -->" in told.stdout, bool(status))
+
     def test_a_table_leaves_out_what_it_is_told_to(self):
         with tempfile.TemporaryDirectory() as name:
             page = pathlib.Path(name) / "docs" / "gallery" / "small"
             page.mkdir(parents=True)
-            (page / "numbers.toml").write_text(NUMBERS + 'tables = [{name = "crest", rows = ["size_m"], values = ["crest_m"], without = {size_m = "1"}}]\n'
+            (page / "numbers.toml").write_text(NUMBERS + 'tables = [{name = "crest", rows = ["size_m"], values = ["crest_m"], without = {size_m = ["1", "2"]}}]\n'
                                                + NUMBERS.split("\n\n")[0].replace("slow", "other").replace("the scene", "listed = no").replace(
                                                    'cost =', 'listed = false\ncost =') + "\n")
-            (page / "sizes.csv").write_text("size_m,crest_m\n1,2\n3,4\n")
+            (page / "sizes.csv").write_text("size_m,crest_m\n1,2\n2,3\n3,4\n")
             (page / "README.md").write_text("".join(f"<!-- {marker} -->\n<!-- end -->\n" for marker in ("numbers", "studies", "sizes: crest")))
             subprocess.run([sys.executable, "-B", SCRIPT, page.parent, "/bin/false", "--pages", "--write"], check=True, stdout=subprocess.DEVNULL)
             text = (page / "README.md").read_text()
             self.assertIn("| 3 | 4 |", text)
             self.assertNotIn("| 1 | 2 |", text)
+            self.assertNotIn("| 2 | 3 |", text)
             self.assertNotIn("listed = no", text)
             told = subprocess.run([sys.executable, "-B", SCRIPT, page.parent, "/bin/false", "--list"], capture_output=True, text=True)
             self.assertIn("listed = no", told.stdout)
