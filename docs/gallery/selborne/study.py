@@ -48,6 +48,7 @@ STUDIES = {
         "locking cured": ("scene.toml", CURED),
         "averaged and cured": ("scene.toml", [*AVERAGED, *CURED]),
         "water that moves": ("moving.toml", []),
+        "slice of tetrahedra as published": ("slice.toml", []),
     },
     "meshes": {f"{size} m": ("scene.toml", [f"mesh.size={size}"]) for size in (1.4, 1.0, 0.7, 0.5)},
 }
