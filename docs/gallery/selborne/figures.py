@@ -1,4 +1,4 @@
-"""The pictures of this page, from runs of the scene and of moving.toml."""
+"""The pictures of this page, from runs of the scene and of slice.toml."""
 import csv
 import shutil
 import subprocess
@@ -20,16 +20,16 @@ FROM_START = (0, 1.06)  # and its mean friction
 PLACES = (5, 12, 19)  # distances along the slip surface of the places that stand for the paper's P1, P5 and P7 [m]
 
 
-def draw(talus, folder=None, moving=None):
-    """Runs both scenes, or reads the results in `folder` and `moving`, and draws all."""
+def draw(talus, folder=None, wet=None):
+    """Runs both scenes, or reads the results in `folder` and `wet`, and draws all."""
     with tempfile.TemporaryDirectory() as made:
         if folder is None:
             folder = made
             subprocess.run([talus, "run", HERE / "scene.toml", "-o", folder, "--force"], check=True)
-        if moving is None:
-            moving = f"{made}/moving"
-            subprocess.run([talus, "run", HERE / "moving.toml", "-o", moving, "--force", "--no-pictures"], check=True)
-        draw_pressures(*history_of(moving))
+        if wet is None:
+            wet = f"{made}/slice"
+            subprocess.run([talus, "run", HERE / "slice.toml", "-o", wet, "--force", "--no-pictures"], check=True)
+        draw_pressures(*history_of(wet))
         results = Results(folder)
         for source, name in COPIED.items():
             shutil.copy(f"{folder}/pictures/{source}.png", HERE / f"{name}.png")
