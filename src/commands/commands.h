@@ -32,7 +32,6 @@ Action add_bench(CLI::App &app);
 Action add_compare(CLI::App &app);
 Action add_converge(CLI::App &app);
 Action add_study(CLI::App &app);
-Action add_verify(CLI::App &app);
 Action add_describe(CLI::App &app);
 
 }  // namespace talus

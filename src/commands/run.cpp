@@ -4,7 +4,7 @@
 #include "commands/foreign_code.h"
 #include "commands/gallery.h"
 #include "commands/slice.h"
-#include "commands/sweep.h"
+#include "commands/starter.h"
 #include "doubts/doubts.h"
 #include "scene/reader.h"
 #include "simulation.h"

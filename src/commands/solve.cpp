@@ -7,7 +7,7 @@
 #include "commands/commands.h"
 #include "commands/foreign_code.h"
 #include "commands/gallery.h"
-#include "commands/sweep.h"
+#include "commands/starter.h"
 #include "doubts/doubts.h"
 #include "output/pictures.h"
 #include "scene/reader.h"

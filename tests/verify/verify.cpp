@@ -1,15 +1,16 @@
+/// The program talus-verify. `talus verify` starts it with the same words.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "commands/case_page.h"
-#include "commands/commands.h"
-#include "commands/rungs.h"
 #include "output/script.h"
+#include "program.h"
 #include "scene/reader.h"
 #include "scene/words.h"
+#include "tests/verify/case_page.h"
+#include "tests/verify/rungs.h"
 
 namespace talus {
 namespace {
@@ -30,16 +31,8 @@ struct Outcome {
   }
 };
 
-/// Scenes stand in the source tree, or in the share folder of an installation.
 std::string scene_of(const LadderEntry &entry) {
-  namespace fs = std::filesystem;
-  const fs::path installed = fs::read_symlink("/proc/self/exe").parent_path().parent_path() / "share/talus/tests";
-  for (const fs::path &tests : {fs::path(TALUS_LADDER), installed}) {
-    const fs::path scene = tests / entry.label / entry.name / "scene.toml";
-    if (fs::is_regular_file(scene)) return scene.string();
-  }
-  throw std::runtime_error("the scene of the case " + std::string(entry.name) + " is neither in " + TALUS_LADDER +
-                           " nor in " + installed.string());
+  return std::string(TALUS_LADDER "/") + entry.label + "/" + entry.name + "/scene.toml";
 }
 
 std::vector<const LadderEntry *> choose(const std::vector<std::string> &names) {
@@ -121,14 +114,15 @@ bool put_in_step(const Outcome &outcome, const VerifyArguments &arguments) {
 
 /// The numbers of the gallery: a script reruns the scenes behind them and compares.
 int verify_gallery(const VerifyArguments &arguments) {
-  std::vector<std::string> words{TALUS_GALLERY, std::filesystem::read_symlink("/proc/self/exe")};
+  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe");
+  std::vector<std::string> words{TALUS_GALLERY, program.parent_path() / "talus"};
   words.insert(words.end(), arguments.cases.begin(), arguments.cases.end());
   if (arguments.longer) words.push_back("--long");
   if (arguments.write) words.push_back("--write");
   if (arguments.pages) words.push_back("--pages");
   if (arguments.list) words.push_back("--list");
   for (const std::string &name : arguments.only) words.insert(words.end(), {"--only", name});
-  return run_script("talus_numbers.py", words);
+  return run_script(PAGE_NUMBERS, words);
 }
 
 int verify(const VerifyArguments &arguments) {
@@ -158,8 +152,6 @@ int verify(const VerifyArguments &arguments) {
   return good ? 0 : 1;
 }
 
-}  // namespace
-
 Action add_verify(CLI::App &app) {
   auto arguments = std::make_shared<VerifyArguments>();
   CLI::App *command =
@@ -181,4 +173,7 @@ Action add_verify(CLI::App &app) {
   return [arguments] { return verify(*arguments); };
 }
 
+}  // namespace
 }  // namespace talus
+
+int main(int argc, char **argv) { return talus::run_program(argc, argv, {talus::add_verify}); }

@@ -1,4 +1,4 @@
-"""What `talus verify --gallery` says at its end: argument 1 is the folder of the scripts."""
+"""What `talus verify --gallery` says at its end."""
 
 import pathlib
 import subprocess
@@ -6,7 +6,7 @@ import sys
 import tempfile
 import unittest
 
-SCRIPT = pathlib.Path(sys.argv.pop(1)) / "talus_numbers.py"
+SCRIPT = pathlib.Path(__file__).with_name("page_numbers.py")
 NUMBERS = """[run.slow]
 about = "the scene as it is"
 scene = "scene.toml"

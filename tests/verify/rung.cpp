@@ -1,4 +1,4 @@
-#include "commands/rung.h"
+#include "tests/verify/rung.h"
 
 #include <algorithm>
 #include <charconv>

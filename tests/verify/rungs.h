@@ -1,7 +1,6 @@
 #pragma once
 /// The verification ladder: one line a case. Each has a folder tests/LABEL/NAME with its scene, its exact answer and a
 /// README.
-#include "commands/rung.h"
 #include "tests/convergence/fem_manufactured/exact.h"
 #include "tests/convergence/manufactured/exact.h"
 #include "tests/verification/at_rest/exact.h"
@@ -48,6 +47,7 @@
 #include "tests/verification/wet_flight/exact.h"
 #include "tests/verification/wet_hand_over/exact.h"
 #include "tests/verification/wet_incline/exact.h"
+#include "tests/verify/rung.h"
 
 namespace talus {
 

@@ -1,5 +1,5 @@
 // The table of a verification page is in step with what its case computes, or the difference is named.
-#include "commands/case_page.h"
+#include "tests/verify/case_page.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

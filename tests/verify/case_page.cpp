@@ -1,4 +1,4 @@
-#include "commands/case_page.h"
+#include "tests/verify/case_page.h"
 
 #include <cmath>
 #include <cstdio>

@@ -1,6 +1,6 @@
 """Numbers of the pages: reruns the scenes behind them, compares, and writes the tables of the pages.
 
-    talus_numbers.py GALLERY TALUS [PAGE ...] [--long] [--only NAME] [--write] [--pages] [--list]
+    page_numbers.py GALLERY TALUS [PAGE ...] [--long] [--only NAME] [--write] [--pages] [--list]
 
 GALLERY is docs/gallery, TALUS the program; `./talus verify --gallery` starts this script with both. A page states its numbers once, in a file
 numbers.toml beside its README.md:
@@ -52,7 +52,11 @@ of them) or `<!-- sizes: crest -->` (a table of a study), and `<!-- end -->`. Be
 of its folder.
 """
 
-import talus_interrupt  # noqa: F401  before all that takes time
+import pathlib
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "src/output/plots"))
+import talus_interrupt  # noqa: E402, F401  before all that takes time
 
 import argparse
 import csv
@@ -61,11 +65,9 @@ import hashlib
 import importlib.util
 import math
 import os
-import pathlib
 import re
 import shutil
 import subprocess
-import sys
 import tempfile
 import time
 import tomllib

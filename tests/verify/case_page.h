@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "commands/rung.h"
+#include "tests/verify/rung.h"
 
 namespace talus {
 
