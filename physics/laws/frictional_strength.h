@@ -91,14 +91,6 @@ struct FrictionalStrength {
     dilation_angle = std::min(dilation_angle, friction_angle);
   }
 
-  /// The strength of a place that has these shares of c and phi, as a strength of its own.
-  void take_shares(double of_cohesion, double of_friction) {
-    cohesion *= of_cohesion, friction_angle *= of_friction;
-    if (residual_cohesion > 0) residual_cohesion *= of_cohesion;
-    if (residual_friction_angle > 0) residual_friction_angle *= of_friction;
-    dilation_angle = std::min(dilation_angle, friction_angle);
-  }
-
   // Set by prepare().
   double residual_c = 0, residual_phi = 0;               ///< [Pa], [rad]
   double sin_psi_peak = 0, sin_psi_residual = 0;         ///< [-]
