@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "physics/laws/laws.h"
+#include "physics/laws/law.h"
 #include "scene/function.h"
 #include "scene/scene.h"
 

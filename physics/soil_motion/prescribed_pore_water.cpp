@@ -5,7 +5,7 @@
 
 #include "base/room.h"
 #include "meshes/locate.h"
-#include "physics/laws/laws.h"
+#include "physics/laws/law.h"
 
 namespace talus {
 

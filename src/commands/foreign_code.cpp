@@ -6,7 +6,7 @@
 namespace talus {
 
 std::vector<std::string> bodies_with_umat(const Scene &scene) {
-  const std::vector<std::string> laws = kinds_of<Law>();
+  const std::vector<std::string> laws = kinds_of<Laws>();
   std::vector<std::string> bodies;
   for (const BodySource &body : scene.body) {
     if (!body.law.reader) continue;

@@ -5,6 +5,7 @@
 #include "commands/commands.h"
 #include "doubts/doubts.h"
 #include "mesh_source.h"
+#include "physics/laws/laws.h"
 #include "scene/quantity.h"
 #include "scene/reader.h"
 #include "solvers/critical_step.h"

@@ -27,7 +27,7 @@
 #include "output/results_folder.h"
 #include "output/script.h"
 #include "physics/boundary/boundary.h"
-#include "physics/laws/laws.h"
+#include "physics/laws/law.h"
 #include "scene/quantity.h"
 #include "scene/reader.h"
 #include "simulation.h"

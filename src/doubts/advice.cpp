@@ -7,6 +7,7 @@
 #include "doubts/scales.h"
 #include "particles/body.h"
 #include "physics/boundary/boundary.h"
+#include "physics/laws/laws.h"
 #include "physics/pores/hyperbolicity.h"
 #include "scene/reader.h"
 #include "scene/stress_at_rest.h"
@@ -17,36 +18,20 @@ namespace {
 std::string digits(double value, int count = 3) { return rounded(value, count); }
 
 /// Does softening depend on the size of the cells?
-bool unscaled(const Law &law) {
-  return std::visit(
-      [](const auto &one) {
-        if constexpr (requires { one.softens(); }) return one.softens() && one.reference_size == 0;
-        return false;
-      },
-      law);
-}
+bool unscaled(const Law &law) { return softens(law) && frictional_strength(law)->reference_size == 0; }
 
 /// Peak friction angle less dilation angle [rad]; 0 for soil without them.
 double flow_off_normal(const Law &law) {
-  return std::visit(
-      [](const auto &one) {
-        if constexpr (requires { one.friction_angle, one.dilation_angle; })
-          return one.friction_angle - one.dilation_angle;
-        return 0.;
-      },
-      law);
+  const FrictionalStrength *strength = frictional_strength(law);
+  return strength ? strength->friction_angle - strength->dilation_angle : 0;
 }
 
 /// Share of its shear strength that soil bears on a slip surface, Davis (1968).
 double davis_share(const Law &law) {
-  return std::visit(
-      [](const auto &one) {
-        if constexpr (requires { one.friction_angle, one.dilation_angle; })
-          return std::cos(one.friction_angle) * std::cos(one.dilation_angle) /
-                 (1 - std::sin(one.friction_angle) * std::sin(one.dilation_angle));
-        return 1.;
-      },
-      law);
+  const FrictionalStrength *strength = frictional_strength(law);
+  if (!strength) return 1;
+  const double phi = strength->friction_angle, psi = strength->dilation_angle;
+  return std::cos(phi) * std::cos(psi) / (1 - std::sin(phi) * std::sin(psi));
 }
 
 constexpr const char *not_unique =
@@ -63,7 +48,7 @@ class Adviser {
 
   std::vector<std::string> all() {
     for (const BodyNeeds &b : needs_.bodies)
-      if (std::holds_alternative<Umat>(b.law))
+      if (b.law.as<Umat>())
         say("body." + b.body.name +
             " runs the library of its UMAT, which can do whatever a program can; --no-umat refuses it.");
     if (!needs_.burst_failure.empty()) say("The run breaks off in its first steps: " + needs_.burst_failure + ".");
@@ -210,9 +195,7 @@ class Adviser {
     const bool by_weight = std::any_of(scene_.stage.begin(), scene_.stage.end(), [](const Stage &s) {
       return s.kind == StageKind::quasi_static && s.initial_stress == InitialStress::kept;
     });
-    if (!by_weight || begins_at_rest(scene_, b.body.name) || !std::holds_alternative<MohrCoulomb>(b.law) ||
-        needs_.gravity == 0)
-      return;
+    if (!by_weight || begins_at_rest(scene_, b.body.name) || !b.law.as<MohrCoulomb>() || needs_.gravity == 0) return;
     const double phi = b.body.strength.friction_angle[0];  // the least asks for most
     const double K = bulk_modulus(b.law), G = shear_modulus(b.law), nu = (3 * K - 2 * G) / (2 * (3 * K + G));
     if (std::sin(phi) >= 1 - 2 * nu || phi == 0) return;

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "physics/boundary/pore_conditions.h"
-#include "physics/laws/laws.h"
+#include "physics/laws/law.h"
 #include "scene/doubt.h"
 #include "scene/doubt_names.h"
 #include "scene/scene.h"
@@ -91,13 +91,7 @@ inline bool may_be_flooded(const SoilFace &face, int up) { return !face.held && 
 inline bool has_seepage(const Scene &scene) {
   return std::ranges::any_of(scene.stage, [](const Stage &stage) { return stage.kind == StageKind::seepage; });
 }
-inline bool has_friction(const Law &law) {
-  return std::visit(
-      [](const auto &one) {
-        return requires { one.friction_angle; };
-      },
-      law);
-}
+inline bool has_friction(const Law &law) { return frictional_strength(law); }
 inline bool on_free_surface(const BoundarySource &boundary) {
   return std::ranges::count(boundary.group, std::string(free_surface)) > 0;
 }

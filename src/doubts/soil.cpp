@@ -3,6 +3,7 @@
 
 #include "base/rounded.h"
 #include "doubts/doubts.h"
+#include "physics/laws/frictional_strength.h"
 
 namespace talus {
 namespace {
@@ -92,12 +93,8 @@ void doubt_soil(const Start &start, Doubts &doubts) {
   const Scene &scene = start.scene;
   for (std::size_t b = 0; b < start.laws.size(); ++b) {
     const std::string name = "body." + scene.body[b].name;
-    const bool dilates = std::visit(
-        [](const auto &law) {
-          if constexpr (requires { law.dilation_angle; }) return law.dilation_angle > 0;
-          return false;
-        },
-        start.laws[b]);
+    const FrictionalStrength *strength = frictional_strength(start.laws[b]);
+    const bool dilates = strength && strength->dilation_angle > 0;
     if (dilates && scene.transfer.locking == Locking::nodal)
       doubts.say("nodal_locking", name + " dilates, and transfer.locking = \"nodal\" then creates energy");
     if (scene.body[b].volume_cap > 0 && fluids_move(scene.phases))

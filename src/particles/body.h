@@ -12,7 +12,8 @@
 #include "base/owned.h"
 #include "base/vec.h"
 #include "meshes/background_mesh.h"
-#include "physics/laws/laws.h"
+#include "physics/laws/lanes.h"
+#include "physics/laws/law.h"
 #include "physics/laws/stress.h"
 #include "scene/scene.h"
 

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "physics/laws/frictional_strength.h"
 #include "simulation/overburden.h"
 #include "simulation/statics.h"
 
@@ -12,15 +13,10 @@ namespace {
 /// elastic soil held at its sides.
 double earth_pressure_at_rest(const BodySource &source, const Law &law, double friction_share) {
   if (source.k0 > 0) return source.k0;
-  return std::visit(
-      [friction_share](const auto &one) {
-        if constexpr (requires { one.friction_angle; })
-          return 1 - std::sin(friction_share * one.friction_angle);
-        else
-          return (3 * one.bulk_modulus() - 2 * one.shear_modulus()) /
-                 (3 * one.bulk_modulus() + 4 * one.shear_modulus());
-      },
-      law);
+  if (const FrictionalStrength *strength = frictional_strength(law))
+    return 1 - std::sin(friction_share * strength->friction_angle);
+  const double K = bulk_modulus(law), G = shear_modulus(law);
+  return (3 * K - 2 * G) / (3 * K + 4 * G);
 }
 
 }  // namespace

@@ -11,7 +11,7 @@ namespace talus {
 Describer scene_keys() {
   Describer keys;
   describe_scene(keys);
-  describe_one_of<Law>(keys, "body.NAME", "law");
+  describe_one_of<Laws>(keys, "body.NAME", "law");
   describe_one_of<Retention>(keys, "body.NAME.retention", "curve");
   describe_one_of<RelativePermeability>(keys, "body.NAME.relative_permeability", "curve");
   describe_one_of<BoundaryKinds>(keys, "boundary.NAME", "kind");

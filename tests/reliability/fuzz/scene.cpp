@@ -3,7 +3,7 @@
 
 #include "input.h"
 #include "physics/boundary/boundary.h"
-#include "physics/laws/laws.h"
+#include "physics/laws/law.h"
 #include "physics/pores/soil_pores.h"
 #include "scene/reader.h"
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "physics/laws/laws.h"
 #include "simulation/output_fields.h"
 
 namespace talus {

@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "physics/laws/laws.h"
+
 namespace talus {
 namespace {
 
