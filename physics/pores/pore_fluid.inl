@@ -86,7 +86,7 @@ void PoreFluid<dim, Phases>::fill(double t) {
 template <int dim, class Phases>
 void PoreFluid<dim, Phases>::fill(const std::function<double(int, const Vec<dim> &)> &liquid) {
   for (size_t b = 0; b < bodies_.size(); ++b) {
-    const ParticleArrays<dim> &p = bodies_[b]->particles();
+    ParticleArrays<dim> &p = bodies_[b]->particles();
     const double grain_density = bodies_[b]->source().grain_density;
     for (int i = 0; i < p.count; ++i) {
       const auto content =

@@ -37,7 +37,7 @@ void SoilMotion<dim, Phases>::gather() {
 template <int dim, class Phases>
 void SoilMotion<dim, Phases>::refer_to_points(size_t b) {
   PointSet &points = points_[b];
-  const ParticleArrays<dim> &p = bodies_[b]->particles();
+  ParticleArrays<dim> &p = bodies_[b]->particles();
   const bool own = transfer_.average_stress;
   points.cell = points.own_cell.data();
   points.stress = own ? points.own_stress.data() : p.stress,

@@ -139,7 +139,7 @@ void seed(Body<dim> &body, const BackgroundMesh<dim> &mesh, int id_stride,
   for (int cell : cells) count += static_cast<PetscInt>(points_in(cell).size());
   PetscCallVoid(body.resize(count));
 
-  const ParticleArrays<dim> &p = body.particles();
+  ParticleArrays<dim> &p = body.particles();
   const StrengthByPlace strength(source.law, body.law());
   int i = 0;
   for (int cell : cells) {

@@ -299,7 +299,7 @@ void Statics<dim>::to_particles() {
   if (world_.motion->gathered()) require(world_.release(clock_.time));
   const bool anew = problem_->soil().restarted();
   for (size_t b = 0; b < world_.bodies.size(); ++b) {
-    const ParticleArrays<dim> &p = world_.bodies[b]->particles();
+    ParticleArrays<dim> &p = world_.bodies[b]->particles();
     const int memory = world_.bodies[b]->history_count();
     for (int i = 0; i < p.count; ++i) {
       const int cell = p.cell[i];

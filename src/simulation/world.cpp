@@ -187,13 +187,13 @@ void World<dim>::reset_displacement(double time) {
   if (motion->gathered()) require(release(time));
   conditions.bases().forget_slip();
   for (const auto &body : bodies) {
-    const ParticleArrays<dim> &p = body->particles();
-    std::copy_n(p.position, p.count, p.reference);
-    std::fill_n(p.velocity, p.count, Vec<dim>{});
+    ParticleArrays<dim> &p = body->particles();
+    std::copy_n(p.position.data(), p.count, p.reference.data());
+    std::fill_n(p.velocity.data(), p.count, Vec<dim>{});
     const auto fields = history_fields(body->law());
     for (size_t k = 0; k < fields.size(); ++k)
       for (int i = 0; !fields[k].kept && i < p.count; ++i) p.history[i * fields.size() + k] = 0;
-    for (int a = 0; a < phases.fluids(); ++a) std::fill_n(p.fluid_velocity[a], p.count, Vec<dim>{});
+    for (int a = 0; a < phases.fluids(); ++a) std::fill_n(p.fluid_velocity[a].data(), p.count, Vec<dim>{});
   }
 }
 

@@ -69,7 +69,7 @@ PetscErrorCode relocate(Body<dim> &body, const BackgroundMesh<dim> &mesh, std::v
   PetscCallMPI(MPI_Comm_size(mesh.comm(), &ranks));
   while (true) {
     leavers.clear();
-    const ParticleArrays<dim> &p = body.particles();
+    ParticleArrays<dim> &p = body.particles();
     for (; first < movers.size(); ++first) {
       const int i = movers[first];
       const Located at = walk(mesh, p.cell[i], p.position[i]);
@@ -88,7 +88,7 @@ PetscErrorCode relocate(Body<dim> &body, const BackgroundMesh<dim> &mesh, std::v
     migrated = true, first = movers.size();
     for (int i = arrival; i < body.particles().count; ++i) movers.push_back(i);
   }
-  const ParticleArrays<dim> &p = body.particles();
+  ParticleArrays<dim> &p = body.particles();
   if (migrated) {  // particles have changed places
     movers.clear();
     for (int i = 0; i < p.count; ++i)

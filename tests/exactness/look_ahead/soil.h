@@ -39,7 +39,7 @@ struct Soil {
     motion->loading.gravity[1] = scene.gravity[1];
     EXPECT_EQ(motion->setup_pores(true), 0);
   }
-  const ParticleArrays<dim> &particles() const { return bodies[0]->particles(); }
+  ParticleArrays<dim> &particles() const { return bodies[0]->particles(); }
 
   Scene scene;
   /// The scene in which water weighs: tests set the gravity of the motion themselves.
