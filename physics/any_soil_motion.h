@@ -15,6 +15,7 @@
 #include "physics/motion.h"
 #include "physics/pores/pore_report.h"
 #include "physics/prescribed_pressure.h"
+#include "physics/soil_motion/step_measures.h"
 #include "physics/soil_motion/work_ledger.h"
 #include "scene/scene.h"
 #include "transfer/transfer.h"
@@ -66,14 +67,7 @@ class AnySoilMotion : public Motion {
   virtual PetscErrorCode serialize(Archive &archive) = 0;
 
   Loading<dim> loading;
-  /// Largest displacement of a node of this rank since the last remap, over its mean edge.
-  virtual double moved() const = 0;
-  /// Smallest cell volume of this rank over its volume in the mesh.
-  virtual double smallest_volume_ratio() const = 0;
-  /// How much the critical step has shrunk with the cells of this rank since the last remap (at most 1).
-  virtual double step_ratio() const = 0;
-  /// Largest nodal speed squared of this rank; NaN when a node has no finite velocity.
-  virtual double speed_squared() const = 0;
+  virtual const StepMeasures &measures() const = 0;
   virtual bool gathered() const = 0;
   virtual const FilledGrid<dim> &grid() const = 0;
   virtual const std::vector<PointSet> &points() const = 0;

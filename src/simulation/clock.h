@@ -17,6 +17,11 @@ struct Clock {
   bool hold_loads = false;  ///< the load time stands still
   std::string stage;        ///< name of the present stage; empty before the first
 
+  /// A step was taken [s].
+  void advance(double step) {
+    time += step, last_step = step, ++steps;
+    if (!hold_loads) load_time += step;
+  }
   void serialize(Archive &archive) { archive.serialize("clock", time, load_time, last_step, steps, hold_loads); }
 };
 

@@ -50,6 +50,16 @@ long long cells_to_divide(const World<dim> &world) {
   return halvings == 0 ? all : (all >> dim * halvings) + all / ranks_of(world.comm);
 }
 
+/// Adds to `sum` the time that `work` takes [s].
+template <class Work>
+void timed(double &sum, Work &&work) {
+  PetscLogDouble start, end;
+  require(PetscTime(&start));
+  require(work());
+  require(PetscTime(&end));
+  sum += end - start;
+}
+
 }  // namespace
 
 template <int dim>
@@ -88,12 +98,29 @@ void Dynamics<dim>::set_loading(const Stage &stage, double stage_time) {
 
 template <int dim>
 Verdict Dynamics<dim>::cycle(double until) {
-  require(world_.motion->begin(clock_.time));
-  require(step(until));
+  constexpr int remaps_between_sorts = 20;
+  AnySoilMotion<dim> &motion = *world_.motion;
+  require(motion.begin(clock_.time));
+  const StepBounds bounds{stable_step(), until};
+  double step = 0;
+  timed(world_.breakdown.step, [&] { return integrator_->advance(motion, clock_.time, bounds, &step); });
+  refuse_obstacle();
+  clock_.advance(step);
   const Verdict verdict = agree();
   if (verdict.broken) refuse_broken();
   just_remapped_ = remap_due_;
-  require(remap_due_ ? remap() : world_.motion->update_pore_pressures(clock_.time));
+  if (!remap_due_) {
+    require(motion.update_pore_pressures(clock_.time));
+    return verdict;
+  }
+  const bool sorting = ++since_sort_ >= remaps_between_sorts;
+  require(world_.release(clock_.time, !sorting));
+  ++remaps_;
+  if (sorting) require(world_.sort()), since_sort_ = 0;
+  double work;
+  require(world_.check_conservation(work_of_rank_, &work));
+  balancing_.remap(work);
+  timed(world_.breakdown.gather, [&] { return motion.begin(clock_.time); });
   return verdict;
 }
 
@@ -129,9 +156,9 @@ double Dynamics<dim>::critical_step() {
   return step;
 }
 
+/// The critical step of the present state [s], which a fixed step must not exceed. Collective.
 template <int dim>
-PetscErrorCode Dynamics<dim>::step(double until) {
-  PetscFunctionBeginUser;
+double Dynamics<dim>::stable_step() {
   notice_release();
   if (critical_step_ == 0 || explicit_drag())
     critical_step_ = critical_step();  // drag follows saturation from step to step
@@ -139,38 +166,32 @@ PetscErrorCode Dynamics<dim>::step(double until) {
   if (rule.fixed > rule.limit * critical_step_)
     throw RunFailure("the soil has come to cells with a critical step of " + rounded(rule.limit * critical_step_) +
                      " s, but integrator.step = " + rounded(rule.fixed) + " s; take a smaller step, or leave it out");
-  PetscLogDouble start, end;
-  double step = 0;
-  PetscCall(PetscTime(&start));
-  PetscCall(integrator_->advance(*world_.motion, clock_.time, {critical_step_ * shrink_, until}, &step));
-  PetscCall(PetscTime(&end));
-  if (const std::string cause = integrator_->obstacle(); !cause.empty()) {
-    const FilledGrid<dim> &grid = world_.motion->grid();
-    const int component = integrator_->obstructing_component();
-    const bool mine = component >= 0;
-    const Vec<dim> where = mine ? grid.position[component / dim % grid.node_count()] : Vec<dim>{};
-    const std::string particle = text_of_first(world_.comm, mine, mine ? world_.nearest_particle(where) : "");
-    throw RunFailure(cause + "; it is largest near " + place_of_first<dim>(world_.comm, mine, where) + ", at " +
-                     particle);
-  }
-  world_.breakdown.step += end - start;
-  clock_.time += step, clock_.last_step = step;
-  if (!clock_.hold_loads) clock_.load_time += step;
-  ++clock_.steps;
-  remap_due_ = world_.scene.transfer.remap_interval == 0;
-  PetscFunctionReturn(0);
+  return critical_step_ * shrink_;
+}
+
+template <int dim>
+void Dynamics<dim>::refuse_obstacle() {
+  const std::string cause = integrator_->obstacle();
+  if (cause.empty()) return;
+  const FilledGrid<dim> &grid = world_.motion->grid();
+  const int component = integrator_->obstructing_component();
+  const bool mine = component >= 0;
+  const Vec<dim> where = mine ? grid.position[component / dim % grid.node_count()] : Vec<dim>{};
+  const std::string particle = text_of_first(world_.comm, mine, mine ? world_.nearest_particle(where) : "");
+  throw RunFailure(cause + "; it is largest near " + place_of_first<dim>(world_.comm, mine, where) + ", at " +
+                   particle);
 }
 
 template <int dim>
 Verdict Dynamics<dim>::agree() {
-  const AnySoilMotion<dim> &motion = *world_.motion;
   constexpr double elsewhere = std::numeric_limits<double>::lowest();
   Vec<3> watched{};
   if (watch && !watch(&watched)) watched.fill(elsewhere);
-  double mine[9] = {motion.moved(),
-                    1 / motion.step_ratio(),
-                    motion.smallest_volume_ratio() <= 0.2 ? 1. : 0.,
-                    !(motion.speed_squared() < 1e300) ? 1. : 0.,
+  const StepMeasures &measures = world_.motion->measures();
+  double mine[9] = {measures.moved,
+                    1 / measures.step_ratio,
+                    measures.smallest_volume_ratio <= 0.2 ? 1. : 0.,
+                    !(measures.speed_squared < 1e300) ? 1. : 0.,
                     interrupted ? 1. : 0.,
                     watched[0],
                     watched[1],
@@ -188,7 +209,8 @@ Verdict Dynamics<dim>::agree() {
         "end the stage by its duration");
   const Verdict verdict{all[0], all[1], {all[5], all[6], all[7]}, all[2] > 0, all[3] > 0, all[4] > 0};
   shrink_ = 1 / verdict.shrink;
-  if (verdict.moved > world_.scene.transfer.remap_interval || verdict.inverted) remap_due_ = true;
+  const double interval = world_.scene.transfer.remap_interval;
+  remap_due_ = interval == 0 || verdict.moved > interval || verdict.inverted;
   if (remap_due_) moved_since_estimate_ += verdict.moved;
   return verdict;
 }
@@ -206,28 +228,6 @@ void Dynamics<dim>::refuse_broken() {
                       "; look at the loads there; a smaller integrator.fraction" +
                       (world_.phases.fluids() > 0 ? "" : ", a volume_cap") +
                       " or transfer.remap_interval = 0 may help");
-}
-
-template <int dim>
-PetscErrorCode Dynamics<dim>::remap() {
-  PetscFunctionBeginUser;
-  PetscLogDouble start, end;
-  constexpr int remaps_between_sorts = 20;
-  const bool sorting = ++since_sort_ >= remaps_between_sorts;
-  PetscCall(world_.release(clock_.time, !sorting));
-  ++remaps_;
-  if (sorting) {
-    PetscCall(world_.sort());
-    since_sort_ = 0;
-  }
-  double work;
-  PetscCall(world_.check_conservation(work_of_rank_, &work));
-  balancing_.remap(work);
-  PetscCall(PetscTime(&start));
-  PetscCall(world_.motion->begin(clock_.time));
-  PetscCall(PetscTime(&end));
-  world_.breakdown.gather += end - start;
-  PetscFunctionReturn(0);
 }
 
 template <int dim>

@@ -59,10 +59,10 @@ class Dynamics {
   void check_fixed_step();
   bool explicit_drag() const { return world_.scene.water.drag == PoreDrag::at_start; }
   void notice_release();
-  PetscErrorCode step(double until);
+  double stable_step();
+  void refuse_obstacle();
   Verdict agree();
   void refuse_broken();
-  PetscErrorCode remap();
 
   World<dim> &world_;
   Clock &clock_;

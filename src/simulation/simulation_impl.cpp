@@ -20,7 +20,10 @@ void Simulation<dim>::run() {
     if (run_.progress.number < 0) begin();
     hand_back_freed_memory();
     const long long before = run_.clock.steps;
-    run_stages();
+    for (;; run_.begin_next_stage()) {
+      make_stage_runner(run_)->run();
+      if (run_.last_stage()) break;
+    }
     note_state();
     note_volumes();
     run_.recorder.note_created_energy();
@@ -182,15 +185,6 @@ void Simulation<dim>::note_bodies() {
               (dim == 2 ? " kg/m" : " kg") + (run_.world.phases.liquid ? " of grains in " : " in ") +
               std::to_string(body.particles) + " particles",
           event::body, {{"volume_m3", body.volume}, {"mass_kg", body.mass}, {"particles", body.particles}});
-}
-
-template <int dim>
-void Simulation<dim>::run_stages() {
-  while (true) {
-    make_stage_runner(run_)->run();
-    if (run_.last_stage()) return;
-    run_.begin_next_stage();
-  }
 }
 
 /// One step under the loads of the first stage.

@@ -51,7 +51,6 @@ class Simulation final : public AnySimulation {
   void note_gaps();
   void note_water_drawn();
   void note_dilation();
-  void run_stages();
   void step_until(double t);
   FactorOfSafety reduce_strength();
   template <class Act>

@@ -44,8 +44,8 @@ struct Pores {
   double over_density = 0;  ///< 1 / density of the grains [m3/kg]
 };
 
-/// Adds the particles of one body to the grid: mass matrices, momentum, volumes, the `fluids` in its pores and, with
-/// averaged stress, the stress points; those listed in `only`, or all. `momentum` [compact nodes][dim] has room for
+/// Adds the particles of one body to the grid: mass matrices, momentum, volumes, the `fluids` in its pores and the
+/// stress points; those listed in `only`, or all. `momentum` [compact nodes][dim] has room for
 /// every node of the local mesh.
 template <int dim, bool averaged, int fluids>
 void to_nodes(const Body<dim> &body, FilledGrid<dim> &grid, Vec<dim> *momentum, PointSet &points,
