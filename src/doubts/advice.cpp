@@ -69,7 +69,7 @@ class Adviser {
     if (!needs_.burst_failure.empty()) say("The run breaks off in its first steps: " + needs_.burst_failure + ".");
     for (const std::string &remark : needs_.mesh.remarks) say(remark);
     for (const BodyNeeds &b : needs_.bodies)
-      if (b.there()) particles(b), locking(b), softening(b), flow(b), yielding_ground(b);
+      if (b.there()) particles(b), softening(b), flow(b);
     if (!needs_.function_fault.empty())
       say(needs_.function_fault +
           ". A run ends where it needs such a value; the function was tried all over the soil and "
@@ -84,13 +84,8 @@ class Adviser {
     }
     if (!scene_.root->has("gravity"))
       say("The scene gives no gravity, so that soil has no weight; gravity = 0 says that this is meant.");
-    stiffness();
     start();
-    for (std::size_t i = 0; i < scene_.stage.size(); ++i) stage(scene_.stage[i]);
     bases();
-    step();
-    transfer();
-    dimension();
     water();
     suction();
     gas_without_drag();
@@ -109,22 +104,6 @@ class Adviser {
       say(std::to_string(fewest) + each +
           "if soil with pore fluids flows far: a column of saturated sand ran out a fifth "
           "less far with 3 per triangle than with 6 or 12; look with `talus converge --by particles`.");
-    const int usual = plane ? particles_per_cell<2>(BodySource()) : particles_per_cell<3>(BodySource());
-    if (fewest >= usual) return;
-    const std::string wanted =
-        "take " + std::to_string(usual) + " or more per " + (plane ? "triangle." : "tetrahedron.");
-    say(fewest == 1 ? "One particle per cell in " + b.body.name + " is too few: the error of stress was " +
-                          (plane ? "10 % at rest and 23 % in motion, compared with 1.2 % and 5 % with three; "
-                                 : "13 to 18 %; ") +
-                          wanted
-                    : std::to_string(fewest) + each + "where cells lose particles; " + wanted);
-  }
-
-  void locking(const BodyNeeds &b) {
-    const double K = bulk_modulus(b.law), G = shear_modulus(b.law), nu = (3 * K - 2 * G) / (2 * (3 * K + G));
-    if (nu > 0.45 && scene_.transfer.locking == Locking::none)
-      say("Poisson's ratio " + digits(nu) + " in " + b.body.name +
-          " makes linear cells lock (the load of a footing was 45 % too high at 0.49) without transfer.locking.");
   }
 
   void softening(const BodyNeeds &b) {
@@ -177,15 +156,6 @@ class Adviser {
           digits(davis_share(b.law), 2) + " of its shear strength.");
   }
 
-  void stiffness() {
-    const LayerNeeds &layer = needs_.layer;
-    if (layer.gravity_strain > 0.1)
-      say("The weight of the soil strains it by " + digits(100 * layer.gravity_strain) +
-          " %: soil that falls by its height arrives at " +
-          digits(100 * scales::fall_speed(layer.height, needs_.gravity) / layer.wave_speed) +
-          " % of the wave speed and bounces.");
-  }
-
   void start() {
     const auto found =  // the first in which soil moves or comes to rest
         std::ranges::find_if(scene_.stage, [](const Stage &stage) { return stage.kind != StageKind::seepage; });
@@ -204,36 +174,6 @@ class Adviser {
           digits(20 * needs_.layer.transit, 1) + " s (20 wave transits) and damping.");
   }
 
-  /// Elastic soil at rest presses sideways with nu / (1 - nu); where that is less than the soil needs to stand, all of
-  /// it yields.
-  void yielding_ground(const BodyNeeds &b) {
-    const bool by_weight = std::any_of(scene_.stage.begin(), scene_.stage.end(), [](const Stage &s) {
-      return s.kind == StageKind::quasi_static && s.initial_stress == InitialStress::kept;
-    });
-    if (!by_weight || begins_at_rest(scene_, b.body.name) || !std::holds_alternative<MohrCoulomb>(b.law) ||
-        needs_.gravity == 0)
-      return;
-    const double phi = b.body.strength.friction_angle[0];  // the least asks for most
-    const double K = bulk_modulus(b.law), G = shear_modulus(b.law), nu = (3 * K - 2 * G) / (2 * (3 * K + G));
-    if (std::sin(phi) >= 1 - 2 * nu || phi == 0) return;
-    const double enough = (1 - std::sin(phi)) / 2;
-    constexpr double locks = 0.45;
-    say("Elastic ground of " + b.body.name +
-        " at rest has the lateral stress ratio nu / (1 - nu) = " + digits(nu / (1 - nu), 2) +
-        ", less than its friction angle requires without cohesion: much of it yields under its weight alone; take "
-        "initial_stress = \"k0\"" +
-        (enough < locks ? ", or poisson_ratio above " + digits(enough, 2) + " (sin phi > 1 - 2 nu)." : "."));
-  }
-
-  void stage(const Stage &stage) {
-    if (is_static(stage.kind)) return;
-    if (stage.until == StopWhen::equilibrium && stage.damping == 0)
-      say("Stage " + stage.name + " waits for equilibrium without damping, so waves hardly decay.");
-    if (stage.until == StopWhen::equilibrium && stage.duration < 20 * needs_.layer.transit)
-      say("Stage " + stage.name + " lasts " + digits(stage.duration / needs_.layer.transit) +
-          " wave transits, too short for equilibrium; give it " + digits(50 * needs_.layer.transit, 1) + " s or more.");
-  }
-
   /// Bases whose friction depends on slip or heat, in stages that do not let them slip for good.
   void bases() {
     for (const BoundarySource &source : scene_.boundary) {
@@ -246,56 +186,6 @@ class Adviser {
           say("Stage " + stage.name + " builds up the stress while boundary." + source.name +
               " counts slip and heat; softening = false keeps it fresh and cold until the loads come.");
     }
-  }
-
-  void step() {
-    if (needs_.fixed_step && needs_.step < needs_.usual_step / 2)
-      say("The fixed step is " + digits(needs_.step / needs_.critical_step, 2) +
-          " of the critical step; without integrator.step it would be " +
-          digits(needs_.usual_step / needs_.critical_step, 2) + " of it.");
-    const BodyReport &b = needs_.slowest_body().body;
-    if (b.critical_step > 0.4 * b.mean_critical_step) return;
-    std::string at = std::string("(") + digits(b.slowest_cell[0]) + ", " + digits(b.slowest_cell[1]) +
-                     (scene_.dimension == 3 ? ", " + digits(b.slowest_cell[2]) : "") + ") m";
-    for (std::size_t i = 0; i < scene_.mesh.refine.size(); ++i)
-      if (inside(scene_.mesh.refine[i], b.slowest_cell)) at += ", in mesh.refine." + std::to_string(i) + ",";
-    say("Small cells at " + at + " determine the step: it is " + digits(b.critical_step / b.mean_critical_step, 2) +
-        " of the mean critical step of the cells of " + b.name + ".");
-  }
-
-  bool inside(const RefineBox &box, const std::array<double, 3> &x) const {
-    for (int d = 0; d < 2; ++d)
-      if (x[d] < box.from[d] || x[d] > box.to[d]) return false;
-    return true;
-  }
-
-  void transfer() {
-    const Transfer &t = scene_.transfer;
-    if (t.remap_interval == 0)
-      say("A remap in every step costs twice the time or more and adds cell-crossing noise; transfer.remap_interval "
-          "= " +
-          digits(Transfer().remap_interval) + " is the default.");
-    if (t.velocity == Velocity::pic)
-      say("transfer.velocity = \"pic\" damps motion at each remap: a slide is slower and comes less far.");
-    if (t.integration == Integration::particle || t.integration == Integration::mixed)
-      say("Integration by particle volumes was four to nine times less accurate than \"blended\" where particles cross "
-          "cells.");
-    constexpr long long few = 5000;
-    if (needs_.ranks > 1 && needs_.particles() / needs_.ranks < few)
-      say("A rank has " + std::to_string(needs_.particles() / needs_.ranks) + " particles; below " +
-          std::to_string(few) + " communication takes longer than the computation it shares.");
-  }
-
-  void dimension() {
-    if (!needs_.mesh.one_element_slice) return;
-    // measured on the gallery's column: with four particles a cell a step costs 7 times, and 1.6 times as many are
-    // needed
-    constexpr double per_particle_in_cell = 2.8;
-    double cells = 0;
-    for (const BodyNeeds &b : needs_.bodies) cells += static_cast<double>(b.body.cells);
-    say("A slice of one element gives the result of plane strain on triangles at about " +
-        digits(per_particle_in_cell * static_cast<double>(needs_.particles()) / cells, 2) +
-        " times the cost; set dimension = 2.");
   }
 
   void water() {

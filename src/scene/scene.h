@@ -181,7 +181,7 @@ struct DenseBox {
   void fields(Visitor &&v) {
     v.point("from", from, metre, "corner of the box with the smallest coordinates");
     v.point("to", to, metre, "corner of the box with the largest coordinates");
-    v.integer("particles_per_cell", particles_per_cell, Range{1, 1000, {1, 64}},
+    v.integer("particles_per_cell", particles_per_cell, Range{1, 1000, {3, 64}},
               "particles per cell at the start, in cells whose centre is in the box");
   }
 };
@@ -257,7 +257,7 @@ struct BodySource {
              "dependence of permeability on porosity n: none, n^3 / (1 - n)^2, or 1 / (1 - n)^2");
     v.deferred_table("retention", retention, "degree of saturation over suction");
     v.deferred_table("relative_permeability", relative_permeability, "permeability over degree of saturation");
-    v.integer("particles_per_cell", particles_per_cell, Range{0, 1000, {1, 64, or_zero}},
+    v.integer("particles_per_cell", particles_per_cell, Range{0, 1000, {3, 64, or_zero}},
               "particles per cell at the start; 0: 3 in a triangle, 4 in a tetrahedron");
     v.number("k0", k0, one, Range{0, 10, {0.2, 3, or_zero}},
              "ratio of lateral to vertical effective stress at rest, for stages with initial_stress = \"k0\"; 0: 1 - "

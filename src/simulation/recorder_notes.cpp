@@ -6,7 +6,6 @@
 
 #include "output/escaped_table.h"
 #include "simulation/recorder.h"
-#include "simulation/ways_out.h"
 
 namespace talus {
 
@@ -53,21 +52,13 @@ bool Recorder<dim>::happened(const char *kind, double since) const {
   return std::ranges::any_of(events_, [&](const Event &one) { return one.kind == kind && one.time >= since; });
 }
 
-template <int dim>
-const std::vector<int> &Recorder<dim>::ways_out() {
-  if (known_ways_ != of_.world.escaped.sums().particles)
-    ways_out_ = talus::ways_out(of_.world), known_ways_ = of_.world.escaped.sums().particles;
-  return ways_out_;
-}
-
 /// The groups by which particles left the mesh, with their shares of the mass. Collective.
 template <int dim>
 std::string Recorder<dim>::ways_in_words() {
   const std::vector<std::string> &names = of_.world.mesh.group_names();
   std::vector<double> mass(names.size() + 1);  // the last: faces without a name
-  const auto &mine = of_.world.escaped.of_this_rank();
-  const std::vector<int> &groups = ways_out();
-  for (std::size_t i = 0; i < mine.size(); ++i) mass[groups[i] < 0 ? names.size() : groups[i]] += mine[i].mass;
+  for (const EscapedParticle<dim> &one : of_.world.escaped.of_this_rank())
+    mass[one.group < 0 ? names.size() : one.group] += one.mass;
   MPI_Allreduce(MPI_IN_PLACE, mass.data(), static_cast<int>(mass.size()), MPI_DOUBLE, MPI_SUM, of_.world.comm);
   std::vector<std::size_t> order(mass.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -130,14 +121,13 @@ void Recorder<dim>::write_escaped() {
   for (const auto &[name, unit] : {std::pair{"", "m"}, {"velocity_", "m/s"}, {"momentum_", "kg m/s"}})
     for (int d = 0; d < dim; ++d) table.names.push_back(history_column(std::string(name) + "xyz"[d], unit));
   table.names.push_back("group"), table.groups = of_.world.mesh.group_names();
-  auto way = ways_out().begin();
   for (const EscapedParticle<dim> &one : escaped.of_this_rank()) {
     table.values.insert(table.values.end(),
                         {one.time, static_cast<double>(one.id), static_cast<double>(one.body), one.mass});
     table.values.insert(table.values.end(), one.fluid_mass, one.fluid_mass + phases_.fluids());
     for (const Vec<dim> *x : {&one.position, &one.velocity, &one.momentum})
       table.values.insert(table.values.end(), x->begin(), x->end());
-    table.values.push_back(*way++);
+    table.values.push_back(static_cast<double>(one.group));
   }
   write_escaped_table(of_.world.comm, options_.directory + "/escaped.csv", header().bodies, table);
   written_escaped_ = escaped.sums().particles;
@@ -255,8 +245,6 @@ template void Recorder<2>::tell(const Event &);
 template void Recorder<3>::tell(const Event &);
 template bool Recorder<2>::happened(const char *, double) const;
 template bool Recorder<3>::happened(const char *, double) const;
-template const std::vector<int> &Recorder<2>::ways_out();
-template const std::vector<int> &Recorder<3>::ways_out();
 template std::string Recorder<2>::ways_in_words();
 template std::string Recorder<3>::ways_in_words();
 template void Recorder<2>::note_escaped();

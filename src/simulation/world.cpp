@@ -122,6 +122,18 @@ std::string World<dim>::thrown(double speed) const {
   return text.str();
 }
 
+template <int dim>
+int World<dim>::group_of(int cell, int face) {
+  if (face_groups_.empty()) {
+    const std::vector<std::string> &names = mesh.group_names();
+    for (std::size_t g = 0; g < names.size(); ++g)
+      for (const Facet<dim> &facet : mesh.facets(names[g]))
+        face_groups_.insert({{facet.cell, facet.face}, static_cast<int>(g)});
+  }
+  const auto found = face_groups_.find({cell, face});
+  return found == face_groups_.end() ? -1 : found->second;
+}
+
 /// Particles that left the mesh: out of the bodies and into the ledger, or the end of the run.
 template <int dim>
 PetscErrorCode World<dim>::take_out(double time) {
@@ -131,15 +143,18 @@ PetscErrorCode World<dim>::take_out(double time) {
     while (b < bodies.size() && outside_[b].empty()) ++b;
     const bool mine = b < bodies.size();
     const std::string place =
-        place_of_first<dim>(comm, mine, mine ? bodies[b]->particles().position[outside_[b][0]] : Vec<dim>{});
-    const double speed = mine ? map<dim>(bodies[b]->particles().velocity[outside_[b][0]]).norm() : 0;
+        place_of_first<dim>(comm, mine, mine ? bodies[b]->particles().position[outside_[b][0].particle] : Vec<dim>{});
+    const double speed = mine ? map<dim>(bodies[b]->particles().velocity[outside_[b][0].particle]).norm() : 0;
     throw MotionFailure("a particle left the mesh near " + place + text_of_first(comm, mine, thrown(speed)) +
                         "; add free space there, or a boundary that keeps soil in, or set mesh.leaving_particles = "
                         "\"remove\", which takes out what leaves (also with --resume)");
   }
   for (size_t b = 0; b < bodies.size(); ++b) {
-    const std::vector<int> &gone = outside_[b];
-    escaped.enter(*bodies[b], static_cast<int>(b), gone, time);
+    std::vector<int> gone;
+    for (const auto &[particle, cell, face] : outside_[b]) {
+      escaped.enter(*bodies[b], static_cast<int>(b), particle, group_of(cell, face), time);
+      gone.push_back(particle);
+    }
     size_t before = 0;  // of those that are gone
     for (int &i : movers_[b]) {
       while (before < gone.size() && gone[before] < i) ++before;

@@ -3,8 +3,10 @@
 /// and no files: times are handed in.
 #include <array>
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "particles/escaped_particles.h"
@@ -19,6 +21,7 @@
 #include "simulation/overburden.h"
 #include "simulation/work.h"
 #include "solvers/critical_step.h"
+#include "transfer/transfer.h"
 
 namespace talus {
 
@@ -137,6 +140,8 @@ class World {
   void count_movers();  ///< after a release
   PetscErrorCode take_out(double time);
   std::string thrown(double speed) const;
+  /// The first group of a face of a local cell; -1: none.
+  int group_of(int cell, int face);
 
   std::vector<CriticalStep<dim>> critical_;
   double wave_speed_ = 0;         ///< the largest of the bodies [m/s]
@@ -144,12 +149,13 @@ class World {
   double fastest_fall_ = 0;       ///< through the mesh, with the largest velocity at the start [m/s]
   double depth_on_bases_ = 0;     ///< of elastic soil at the start [m]
   const WorkRates rates_;
-  WorkCounts counts_;                      ///< runs and movers of this rank; the rest is counted where it is asked for
-  std::vector<int> cells_of_movers_;       ///< into which they went at the last release
-  double seeded_mass_ = 0;                 ///< of all ranks [kg]
-  long long seeded_particles_ = 0;         ///< of all ranks
-  std::vector<std::vector<int>> movers_;   ///< [body] particles that left their cells at the last release ...
-  std::vector<std::vector<int>> outside_;  ///< ... and those of them that left the mesh
+  WorkCounts counts_;                     ///< runs and movers of this rank; the rest is counted where it is asked for
+  std::vector<int> cells_of_movers_;      ///< into which they went at the last release
+  double seeded_mass_ = 0;                ///< of all ranks [kg]
+  long long seeded_particles_ = 0;        ///< of all ranks
+  std::vector<std::vector<int>> movers_;  ///< [body] particles that left their cells at the last release ...
+  std::vector<std::vector<LeftMesh>> outside_;      ///< ... and those of them that left the mesh
+  std::map<std::pair<int, int>, int> face_groups_;  ///< by cell and face; found when particles leave the mesh
   long long releases_ = 0;
 };
 

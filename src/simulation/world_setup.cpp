@@ -229,7 +229,7 @@ template <int dim>
 void World<dim>::settle_bodies() {
   conditions.surface_loads().share(mesh, cells_of_bodies([](size_t) { return true; }));
   smallest_altitude_ = mesh.report().smallest_altitude;
-  critical_.clear();
+  critical_.clear(), face_groups_.clear();
   for (size_t b = 0; b < scene.body.size(); ++b) {
     const BodySource &source = scene.body[b];
     double density = 0;  // where its soil is heaviest
@@ -293,7 +293,7 @@ void World<dim>::seed_bodies() {
     require(relocate<dim>(body, mesh, movers_[b], outside_[b]));
     const bool lost = !outside_[b].empty();
     const std::string outside =
-        place_of_first<dim>(comm, lost, lost ? body.particles().position[outside_[b][0]] : Vec<dim>{});
+        place_of_first<dim>(comm, lost, lost ? body.particles().position[outside_[b][0].particle] : Vec<dim>{});
     if (!outside.empty()) scene.complain(path + ".displacement", "takes particles out of the mesh near " + outside);
     require(body.sort(mesh.cell_count()));
   }
