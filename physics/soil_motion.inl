@@ -3,8 +3,11 @@
 #include <cmath>
 
 #include "base/room.h"
+#include "particles/own_acceleration.h"
 #include "physics/pores/pore_fluid.inl"
 #include "physics/soil_motion.h"
+#include "scene/scene.h"
+#include "scene/transfer_source.h"
 
 namespace talus {
 
@@ -20,7 +23,7 @@ SoilMotion<dim, Phases>::SoilMotion(const MotionParts<dim> &parts)
     : mesh_(parts.mesh),
       bodies_(parts.bodies),
       conditions_(parts.conditions),
-      transfer_(parts.scene.transfer),
+      transfer_(*parts.scene.transfer),
       total_mass_(parts.total_mass),
       smallest_mass_(1e-12 * parts.total_mass / static_cast<double>(parts.particles)),
       grid_(parts.mesh),
@@ -28,13 +31,13 @@ SoilMotion<dim, Phases>::SoilMotion(const MotionParts<dim> &parts)
       points_(parts.bodies.size()),
       next_points_(parts.bodies.size()),
       accepted_(parts.mesh.cell_count(), parts.bodies.size()),
-      velocities_(parts.mesh.node_count(), parts.relaxation_time, parts.scene.transfer.remap_interval > 0,
-                  parts.scene.transfer.velocity == Velocity::flip ? 1 - parts.scene.transfer.pic_fraction : 0),
+      velocities_(parts.mesh.node_count(), parts.relaxation_time, parts.scene.transfer->remap_interval > 0,
+                  parts.scene.transfer->velocity == Velocity::flip ? 1 - parts.scene.transfer->pic_fraction : 0),
       water_(parts.mesh, parts.bodies, parts.pressure),
       work_(parts.mesh.node_count(),
             Phases::prescribed ||
                 std::any_of(parts.bodies.begin(), parts.bodies.end(),
-                            [](const auto &body) { return !body->source().body_acceleration.empty(); })),
+                            [](const auto &body) { return !own_acceleration(body->source()).empty(); })),
       fastest_mode_(parts.mesh, smallest_mass_, pores_of_bodies(parts)),
       fluid_(parts.mesh, parts.bodies, parts.scene) {
   const BackgroundMesh<dim> &mesh = parts.mesh;
@@ -49,7 +52,7 @@ SoilMotion<dim, Phases>::SoilMotion(const MotionParts<dim> &parts)
   make_room(patch_weight_, mesh.patch_count), make_room(patch_sum_, mesh.patch_count);
   make_room(nodal_, static_cast<size_t>(nodes) * (dim + 2));
   for (const auto &body : bodies) {
-    const double length = body->source().averaging_length;
+    const double length = body->averaging_length();
     nonlocal_.push_back(length > 0 ? std::make_unique<NonlocalStrain<dim>>(
                                          mesh, length, plastic_strain_field(body->law()), body->history_count())
                                    : nullptr);

@@ -2,7 +2,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "particles/own_acceleration.h"
 #include "physics/soil_motion.h"
+#include "scene/transfer_source.h"
 
 namespace talus {
 
@@ -57,7 +59,7 @@ void SoilMotion<dim, Phases>::internal_force(const State &state) {
 template <int dim, class Phases>
 void SoilMotion<dim, Phases>::add_body_forces(double load_time) {
   for (const auto &body : bodies_) {
-    const auto &acceleration = body->source().body_acceleration;
+    const auto &acceleration = own_acceleration(body->source());
     if (acceleration.empty()) continue;
     const ParticleArrays<dim> &p = body->particles();
     for (int i = 0; i < p.count; ++i) {

@@ -5,6 +5,7 @@
 
 #include "base/local_numbers.h"
 #include "physics/soil_motion.h"
+#include "scene/transfer_source.h"
 
 namespace talus {
 
@@ -156,7 +157,7 @@ SofteningInput SoilMotion<dim, Phases>::softened_by(int b, int i) const {
   const PointSet &points = points_[b];
   const int q = transfer_.average_stress ? points.find(p.cell[i]) : i;
   found.plastic_strain = points.history[q * count + field];
-  if (nonlocal_[b]) found.plastic_strain += nonlocal_[b]->excess(q), found.size = 2 * body.source().averaging_length;
+  if (nonlocal_[b]) found.plastic_strain += nonlocal_[b]->excess(q), found.size = 2 * body.averaging_length();
   return found;
 }
 

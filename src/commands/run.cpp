@@ -7,6 +7,7 @@
 #include "commands/sweep.h"
 #include "doubts/doubts.h"
 #include "scene/reader.h"
+#include "scene/scene.h"
 #include "simulation.h"
 
 namespace talus {

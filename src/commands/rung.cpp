@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "scene/reader.h"
+#include "scene/scene.h"
 
 namespace talus {
 namespace {

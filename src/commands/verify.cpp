@@ -9,6 +9,7 @@
 #include "commands/rungs.h"
 #include "output/script.h"
 #include "scene/reader.h"
+#include "scene/scene.h"
 #include "scene/words.h"
 
 namespace talus {

@@ -11,9 +11,12 @@
 
 #include "physics/boundary/pore_conditions.h"
 #include "physics/laws/laws.h"
+#include "scene/boundary_source.h"
 #include "scene/doubt.h"
 #include "scene/doubt_names.h"
 #include "scene/scene.h"
+#include "scene/stage.h"
+#include "scene/water_table.h"
 #include "simulation.h"
 
 namespace talus {

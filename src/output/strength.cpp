@@ -8,7 +8,9 @@
 #include "output/hdf5_file.h"
 #include "output/replace_file.h"
 #include "physics/laws/strength_by_place.h"
+#include "scene/body_source.h"
 #include "scene/reader.h"
+#include "scene/scene.h"
 
 namespace talus {
 namespace {

@@ -1,5 +1,6 @@
 #pragma once
 /// A simulation of one dimension: its run, stage by stage, and what a host program asks of it.
+#include "scene/scene.h"
 #include "simulation/drains.h"
 #include "simulation/model.h"
 #include "simulation/run.h"

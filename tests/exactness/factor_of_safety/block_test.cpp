@@ -10,6 +10,7 @@
 #include "base/read_file.h"
 #include "base/temporary_folder.h"
 #include "scene/reader.h"
+#include "scene/scene.h"
 #include "simulation.h"
 #include "solvers/quasi_static/bracket.h"
 

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "scene/reader.h"
+#include "scene/scene.h"
 #include "simulation.h"
 #include "solvers/quasi_static/bracket.h"
 #include "solvers/quasi_static/trial_strength.h"

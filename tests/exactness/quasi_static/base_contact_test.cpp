@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "scene/scene.h"
 #include "solved.h"
 
 namespace talus {

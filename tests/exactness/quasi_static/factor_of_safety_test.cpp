@@ -1,4 +1,5 @@
 // The factor of safety: laws that it refuses, and soil that it leaves as it is.
+#include "scene/scene.h"
 #include "solved.h"
 
 namespace talus {

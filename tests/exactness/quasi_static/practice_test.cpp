@@ -1,5 +1,6 @@
 // What practice asks of a slope: earthquakes as a share of gravity, weights given as unit weights, strength that
 // differs from place to place.
+#include "scene/scene.h"
 #include "solved.h"
 
 namespace talus {

@@ -1,4 +1,5 @@
 // Seepage and consolidation where the answer is known.
+#include "scene/scene.h"
 #include "solved.h"
 
 namespace talus {

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "scene/reader.h"
+#include "scene/scene.h"
 #include "simulation.h"
 
 namespace talus {

@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "scene/body_source.h"
+
 namespace talus {
 namespace {
 
