@@ -137,7 +137,7 @@ int solve(const SolveArguments &arguments) {
   const std::string file = find_scene(arguments.scene);
   Scene scene = read_scene(file, arguments.set);
   if (arguments.no_umat) refuse_umat(scene);
-  const auto dynamic = [](const Stage &stage) { return stage.kind == StageKind::dynamic; };
+  const auto dynamic = [](const Stage &stage) { return !stage.is_static(); };
   std::erase_if(scene.stage, dynamic);
   if (scene.stage.empty())
     throw std::invalid_argument(

@@ -111,7 +111,7 @@ class Adviser {
     const int fewest = b.body.fewest_per_cell;
     const bool plane = scene_.dimension == 2;
     const std::string each = " particles per cell in " + b.body.name + " are few ";
-    const auto moves = [](const Stage &stage) { return !is_static(stage.kind) && stage.pore_flow; };
+    const auto moves = [](const Stage &stage) { return !stage.is_static() && stage.pore_flow; };
     if (fluids_move(scene_.phases) && std::ranges::any_of(scene_.stage, moves) && fewest < (plane ? 6 : 8))
       say(std::to_string(fewest) + each +
           "if soil with pore fluids flows far: a column of saturated sand ran out a fifth "
@@ -171,7 +171,7 @@ class Adviser {
     bool loaded = false;
     std::string loads;
     for (const Stage &stage : scene_.stage) {
-      if (stage.kind != StageKind::quasi_static && stage.kind != StageKind::consolidation) continue;
+      if (!stage.settles_soil()) continue;
       if (loaded && loads.empty()) loads = stage.name;
       loaded = true;
     }
@@ -195,13 +195,13 @@ class Adviser {
 
   void start() {
     const auto found =  // the first in which soil moves or comes to rest
-        std::ranges::find_if(scene_.stage, [](const Stage &stage) { return stage.kind != StageKind::seepage; });
-    if (needs_.gravity == 0 || found == scene_.stage.end() || is_static(found->kind)) return;
+        std::ranges::find_if(scene_.stage, [](const Stage &stage) { return stage.soil_moves(); });
+    if (needs_.gravity == 0 || found == scene_.stage.end() || found->is_static()) return;
     const Stage &first = *found;
     const bool stressed =
         std::all_of(scene_.body.begin(), scene_.body.end(), [](const auto &b) { return !b.stress.empty(); });
-    if (stressed || first.gravity_ramp > 0 || first.damping > 0) return;
-    const auto at_rest = [](const Stage &stage) { return is_static(stage.kind) && stage.kind != StageKind::seepage; };
+    if (stressed || first.gravity_ramp() > 0 || first.damping() > 0) return;
+    const auto at_rest = [](const Stage &stage) { return stage.settles_soil(); };
     if (const auto later = std::ranges::find_if(scene_.stage, at_rest); later != scene_.stage.end())
       say("Stage " + later->name + " would bring the soil to rest under its weight, but comes after " + first.name +
           ", in which soil without stress falls under it at once.");
@@ -215,7 +215,7 @@ class Adviser {
   /// it yields.
   void yielding_ground(const BodyNeeds &b) {
     const bool by_weight = std::any_of(scene_.stage.begin(), scene_.stage.end(), [](const Stage &s) {
-      return s.kind == StageKind::quasi_static && s.initial_stress == InitialStress::kept;
+      return s.settles_soil() && !s.water_flows() && !s.begins_at_rest();
     });
     if (!by_weight || begins_at_rest(scene_, b.body.name) || !std::holds_alternative<MohrCoulomb>(b.law) ||
         needs_.gravity == 0)
@@ -233,10 +233,10 @@ class Adviser {
   }
 
   void stage(const Stage &stage) {
-    if (is_static(stage.kind)) return;
-    if (stage.until == StopWhen::equilibrium && stage.damping == 0)
+    if (stage.is_static()) return;
+    if (stage.stop().settles && stage.damping() == 0)
       say("Stage " + stage.name + " waits for equilibrium without damping, so waves hardly decay.");
-    if (stage.until == StopWhen::equilibrium && stage.duration < 20 * needs_.layer.transit)
+    if (stage.stop().settles && stage.duration < 20 * needs_.layer.transit)
       say("Stage " + stage.name + " lasts " + digits(stage.duration / needs_.layer.transit) +
           " wave transits, too short for equilibrium; give it " + digits(50 * needs_.layer.transit, 1) + " s or more.");
   }
@@ -246,10 +246,10 @@ class Adviser {
     for (const BoundarySource &source : scene_.boundary) {
       if (!read_boundary(source.kind).remembers) continue;
       for (const Stage &stage : scene_.stage)
-        if (is_static(stage.kind) && stage.kind != StageKind::seepage)
+        if (stage.settles_soil())
           say("Stage " + stage.name + " takes boundary." + source.name +
               " at a slip of 0 and cold: finite elements do not follow its slip.");
-        else if (!is_static(stage.kind) && stage.gravity_ramp > 0 && stage.softening)
+        else if (!stage.is_static() && stage.gravity_ramp() > 0 && stage.softening)
           say("Stage " + stage.name + " builds up the stress while boundary." + source.name +
               " counts slip and heat; softening = false keeps it fresh and cold until the loads come.");
     }

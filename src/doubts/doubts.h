@@ -92,7 +92,7 @@ inline double table_at(const WaterTable &table, const std::array<double, 3> &x) 
 /// May water stand on the face? Not on what faces down, and not where a support is.
 inline bool may_be_flooded(const SoilFace &face, int up) { return !face.held && face.normal[up] > -1e-6; }
 inline bool has_seepage(const Scene &scene) {
-  return std::ranges::any_of(scene.stage, [](const Stage &stage) { return stage.kind == StageKind::seepage; });
+  return std::ranges::any_of(scene.stage, [](const Stage &stage) { return stage.seeps(); });
 }
 inline bool has_friction(const Law &law) {
   return std::visit(

@@ -75,7 +75,7 @@ void burst(AnySimulation &simulation, Scene &scene, Needs &needs) {
   const double interval = scene.transfer->remap_interval;
   double time = 0, end = 0;  // of the motion with which the run begins; steps beyond its end are timed and no more [s]
   for (const Stage &stage : scene.stage) {
-    if (is_static(stage.kind)) break;
+    if (stage.is_static()) break;
     end += stage.duration;
   }
   try {
@@ -113,9 +113,9 @@ Drainage drainage_of(const Scene &scene, const Needs &needs) {
   Drainage d;
   if (needs.gravity == 0) return d;
   for (std::size_t i = 0; i < needs.stages.size(); ++i)
-    if (!is_static(scene.stage[i].kind)) d.time += needs.stages[i].duration;
+    if (!scene.stage[i].is_static()) d.time += needs.stages[i].duration;
   if (d.time == 0) return d;
-  for (const Stage &stage : scene.stage) d.computed |= water_flows(stage.kind);
+  for (const Stage &stage : scene.stage) d.computed |= stage.water_flows();
   const double water_weight = scene.water->density * needs.gravity;
   const auto bound = [&](double factor) {
     return scales::conductivity_at(factor, needs.layer.modulus, water_weight, d.time, needs.layer.height);
@@ -131,7 +131,7 @@ Drainage drainage_of(const Scene &scene, const Needs &needs) {
 std::vector<HeatedBaseNeeds> heated_bases_of(const Scene &scene, const Needs &needs) {
   double time = 0;
   for (const Stage &stage : scene.stage)
-    if (!is_static(stage.kind)) time += stage.duration;
+    if (!stage.is_static()) time += stage.duration;
   const BodyReport &soil = needs.bodies.front().body;
   double middle[3];
   for (int d = 0; d < 3; ++d) middle[d] = (soil.low[d] + soil.high[d]) / 2;
@@ -247,8 +247,9 @@ Needs find_needs(Scene &scene, bool with_model) {
   }
   needs.snapshots = 1;
   for (const Stage &stage : scene.stage) {
-    if (is_static(stage.kind)) {  // by finite elements: no waves, no steps of the motion
-      needs.stages.push_back({stage.name, stage.duration, static_cast<double>(stage.load_steps), 0, 0});
+    if (stage.is_static()) {  // by finite elements: no waves, no steps of the motion
+      needs.stages.push_back(
+          {stage.name, stage.duration, static_cast<double>(stage.finite_elements()->load_steps), 0, 0});
       continue;
     }
     const double steps = std::ceil(stage.duration / needs.step);

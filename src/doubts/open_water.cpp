@@ -236,7 +236,7 @@ void doubt_film_on_ground(const Start &start, const OpenWater &open, double leve
   const Scene &scene = start.scene;
   const WaterTable &table = scene.water->table;
   if (scene.phases != PhaseModel::saturated || !table.given() || open.elsewhere() >= 0) return;
-  if (std::ranges::none_of(scene.stage, [](const Stage &s) { return !is_static(s.kind) && s.pore_flow; })) return;
+  if (std::ranges::none_of(scene.stage, [](const Stage &s) { return !s.is_static() && s.pore_flow; })) return;
   double all = 0, dry = 0, most = 0;
   for (const SoilFace &face : start.surface) {
     if (!may_be_flooded(face, start.up) || face.ends_mesh) continue;
@@ -265,7 +265,7 @@ void doubt_open_water(const Start &start, Doubts &doubts) {
     doubt_film_on_ground(start, open, levels.front(), doubts);
   }
   if (scene.phases != PhaseModel::drained || !scene.water->open_water_load) return;
-  if (scene.stage.front().kind == StageKind::seepage) return;  // which finds the water that counts
+  if (scene.stage.front().seeps()) return;  // which finds the water that counts
   doubt_ponds(start, levels, doubts);
   doubt_own_tables(start, levels, doubts);
 }

@@ -116,7 +116,7 @@ void doubt_soil(const Start &start, Doubts &doubts) {
 }
 
 void doubt_cells(const Start &start, Doubts &doubts) {
-  const auto rests = std::ranges::find_if(start.scene.stage, [](const Stage &stage) { return is_static(stage.kind); });
+  const auto rests = std::ranges::find_if(start.scene.stage, [](const Stage &stage) { return stage.is_static(); });
   for (const BodyReport &body : start.bodies)
     if (body.one_element_across && rests != start.scene.stage.end() &&
         start.scene.quasi_static->elements != Elements::quadratic)

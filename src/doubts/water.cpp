@@ -54,7 +54,7 @@ void doubt_excess_alone(const Start &start, Doubts &doubts) {
 void doubt_changing_table(const Start &start, Doubts &doubts) {
   const Scene &scene = start.scene;
   if (!phase_traits(scene.phases).liquid ||
-      std::ranges::any_of(scene.stage, [](const Stage &s) { return is_static(s.kind) || !s.pore_flow; }))
+      std::ranges::any_of(scene.stage, [](const Stage &s) { return s.is_static() || !s.pore_flow; }))
     return;
   if (scene.water->level.depends_on_time() || scene.water->excess.depends_on_time())
     doubts.say("changing_table",

@@ -263,9 +263,9 @@ class Checks {
 
   void weight(const std::string &path, const BodySource &body) const {
     const bool grains = body.porosity > 0 && body.grain_density > 0;
-    const bool seeps = scene_.phases == PhaseModel::drained &&
-                       std::any_of(scene_.stage.begin(), scene_.stage.end(),
-                                   [](const Stage &stage) { return stage.kind == StageKind::seepage; });
+    const bool seeps =
+        scene_.phases == PhaseModel::drained &&
+        std::any_of(scene_.stage.begin(), scene_.stage.end(), [](const Stage &stage) { return stage.seeps(); });
     if ((fluids_move(scene_.phases) || seeps) && !grains)
       reader_.complain(path,
                        "needs porosity and grain_density, since pore water moves (phases = \"" + phases() + "\")");
@@ -277,7 +277,7 @@ class Checks {
   }
 
   void prescribed_pressure(const std::string &key) const {
-    const auto flows = [](const Stage &stage) { return water_flows(stage.kind); };
+    const auto flows = [](const Stage &stage) { return stage.water_flows(); };
     if (scene_.phases != PhaseModel::drained || std::any_of(scene_.stage.begin(), scene_.stage.end(), flows))
       reader_.complain(key, "prescribes the pore pressure, which needs phases = \"drained\" and no seepage stage");
   }
@@ -341,8 +341,8 @@ class Checks {
     if (dry && scene_.water->given)
       reader_.complain("water", "has no effect, since phases = \"dry\" has no pore water; set phases = \"drained\"");
     table("water.table", scene_.water->table);
-    const bool seeps = std::any_of(scene_.stage.begin(), scene_.stage.end(),
-                                   [](const Stage &stage) { return water_flows(stage.kind); });
+    const bool seeps =
+        std::any_of(scene_.stage.begin(), scene_.stage.end(), [](const Stage &stage) { return stage.water_flows(); });
     if (scene_.water->suction.given() && scene_.phases == PhaseModel::saturated)
       reader_.complain("water.suction",
                        "has no effect, since phases = \"saturated\" keeps all pores full of water under pressure; set "
@@ -396,96 +396,74 @@ class Checks {
   void stage(const Stage &stage, const std::string &path) const {
     if (has_control_characters(stage.name))
       reader_.complain(path + ".name", "must be a name without line breaks and other control characters");
-    bodies_of(stage, path);
+    if (const StaticKeys *keys = stage.finite_elements()) bodies_of(*keys, path);
+    if (stage.water_flows()) flow(stage, path);
+    if (!stage.seismic_coefficient().empty()) earthquake(stage.seismic_coefficient(), path + ".seismic_coefficient");
+    if (stage.begins_at_rest() && !gravity_is_down())
+      reader_.complain(path + ".initial_stress",
+                       "needs gravity along -" + up() + ", since it counts the soil above along " + up() +
+                           "; give the stress by body.NAME.stress where the axes are inclined");
+    const auto *fails = stage.motion() ? std::get_if<AtFailure>(&stage.motion()->until) : nullptr;
+    if (fails) failure(*fails, path);
+  }
+
+  void flow(const Stage &stage, const std::string &path) const {
     const bool drained = scene_.phases == PhaseModel::drained;
-    if (water_flows(stage.kind) && scene_.phases != PhaseModel::saturated && scene_.phases != PhaseModel::unsaturated &&
-        !(drained && stage.kind == StageKind::seepage))
-      reader_.complain(path + ".kind",
-                       "needs pore water that moves: set phases = \"saturated\" or \"unsaturated\"" +
-                           std::string(stage.kind == StageKind::seepage
-                                           ? " (or \"drained\", whose pressure is then computed by seepage)"
-                                           : "") +
-                           ", not \"" + phases() + "\"");
-    if (drained && water_flows(stage.kind) && !(scene_.water->excess.constant() && scene_.water->excess(0) == 0))
+    if (scene_.phases != PhaseModel::saturated && scene_.phases != PhaseModel::unsaturated &&
+        !(drained && stage.seeps()))
+      reader_.complain(
+          path + ".kind",
+          "needs pore water that moves: set phases = \"saturated\" or \"unsaturated\"" +
+              std::string(stage.seeps() ? " (or \"drained\", whose pressure is then computed by seepage)" : "") +
+              ", not \"" + phases() + "\"");
+    if (drained && !(scene_.water->excess.constant() && scene_.water->excess(0) == 0))
       reader_.complain("water.excess",
                        "cannot be combined with seepage, which computes the pressure: give pressures, heads or fluxes "
                        "at [boundary.NAME]");
-    if (stage.kind == StageKind::consolidation && scene_.quasi_static->elements != Elements::quadratic)
+    if (stage.soil_moves() && scene_.quasi_static->elements != Elements::quadratic)
       reader_.complain("quasi_static.elements",
                        "must be \"quadratic\" for consolidation: displacement of first order with pressure of first "
                        "order is not stable");
-    if (stage.kind == StageKind::consolidation && scene_.quasi_static->linear_solver == LinearSolver::iterative)
+    if (stage.soil_moves() && scene_.quasi_static->linear_solver == LinearSolver::iterative)
       reader_.complain(
           "quasi_static.linear_solver",
           "must not be \"iterative\" for consolidation: its matrix is indefinite and is factorised; leave it out");
-    if (!stage.seismic_coefficient.empty()) {
-      components(path + ".seismic_coefficient", stage.seismic_coefficient.size(), scene_.dimension, "components");
-      if (water_flows(stage.kind))
-        reader_.complain(path + ".seismic_coefficient",
-                         "belongs to dynamic and quasi_static stages, not to those in which pore water flows");
-      if (scene_.gravity_size() == 0)
-        reader_.complain(path + ".seismic_coefficient", "is a part of gravity, and the scene has none: give gravity");
-      for (const double k : stage.seismic_coefficient)
-        if (!(std::abs(k) <= 2))
-          reader_.complain(path + ".seismic_coefficient", "must have components from -2 to 2, parts of gravity");
-    }
-    if (stage.steady && stage.kind != StageKind::seepage)
-      reader_.complain(path + ".steady", "belongs to seepage: set kind = \"seepage\"");
-    if (is_static(stage.kind)) {
-      const std::string no = "has no effect in a quasi-static stage; leave it out";
-      if (stage.until != StopWhen::duration) reader_.complain(path + ".until", no);
-      if (stage.damping > 0) reader_.complain(path + ".damping", no);
-      if (stage.gravity_ramp > 0) reader_.complain(path + ".gravity_ramp", no);
-      if (stage.initial_stress == InitialStress::k0 && !gravity_is_down())
-        reader_.complain(path + ".initial_stress",
-                         "needs gravity along -" + up() + ", since it counts the soil above along " + up() +
-                             "; give the stress by body.NAME.stress where the axes are inclined");
-    } else {
-      const Stage usual;
-      for (const auto &[key, given] : {std::pair{".initial_stress", stage.initial_stress != usual.initial_stress},
-                                       {".load_steps", stage.load_steps != usual.load_steps},
-                                       {".when_lost", stage.when_lost != usual.when_lost}})
-        if (given) reader_.complain(path + key, "belongs to quasi-static stages: set kind = \"quasi_static\"");
-    }
-    criterion(stage, path);
-    if (stage.until != StopWhen::failure) return;
+  }
+
+  void earthquake(const std::vector<double> &coefficient, const std::string &path) const {
+    components(path, coefficient.size(), scene_.dimension, "components");
+    if (scene_.gravity_size() == 0)
+      reader_.complain(path, "is a part of gravity, and the scene has none: give gravity");
+    for (const double k : coefficient)
+      if (!(std::abs(k) <= 2)) reader_.complain(path, "must have components from -2 to 2, parts of gravity");
+  }
+
+  void failure(const AtFailure &until, const std::string &path) const {
     std::vector<std::string> points;
     for (const OutputPoint &point : scene_.output->point) points.push_back(point.name);
     if (points.empty())
       reader_.complain(path, "ends by failure of a point, but the scene has no points: add [output.point.NAME]");
-    if (std::find(points.begin(), points.end(), stage.failure_point) == points.end())
+    if (std::find(points.begin(), points.end(), until.failure_point) == points.end())
       reader_.complain(path + ".failure_point",
-                       "must name a point of [output.point.NAME]; " + suggestion(stage.failure_point, points));
-  }
-
-  /// Keys of a criterion that the stage does not have.
-  void criterion(const Stage &stage, const std::string &path) const {
-    const Stage usual;
-    using enum StopWhen;
-    for (const auto &[key, given, until, name] :
-         {std::tuple{".force_ratio", stage.force_ratio != usual.force_ratio, equilibrium, "equilibrium"},
-          {".energy_ratio", stage.energy_ratio != usual.energy_ratio, equilibrium, "equilibrium"},
-          {".rest_speed", stage.rest_speed != usual.rest_speed, rest, "rest"},
-          {".failure_point", stage.failure_point != usual.failure_point, failure, "failure"},
-          {".failure_speed", stage.failure_speed != usual.failure_speed, failure, "failure"},
-          {".failure_time", stage.failure_time != usual.failure_time, failure, "failure"}})
-      if (given && stage.until != until)
-        reader_.complain(path + key, std::string("has no effect without until = \"") + name +
-                                         "\": give that criterion to the stage, or leave the key out");
+                       "must name a point of [output.point.NAME]; " + suggestion(until.failure_point, points));
   }
 
   /// A stage adds bodies that are not there, and removes bodies that are. A body that some stage adds is absent before.
   void bodies_that_come_and_go() const {
     std::vector<std::string> absent;
-    for (const Stage &stage : scene_.stage) absent.insert(absent.end(), stage.add.begin(), stage.add.end());
+    for (const Stage &stage : scene_.stage)
+      if (const StaticKeys *keys = stage.finite_elements())
+        absent.insert(absent.end(), keys->add.begin(), keys->add.end());
     for (std::size_t i = 0; i < scene_.stage.size(); ++i) {
       const std::string path = "stage." + std::to_string(i);
-      for (const std::string &name : scene_.stage[i].add) {
+      const StaticKeys *keys = scene_.stage[i].finite_elements();
+      if (!keys) continue;
+      for (const std::string &name : keys->add) {
         if (std::find(absent.begin(), absent.end(), name) == absent.end())
           reader_.complain(path + ".add", "adds body." + name + ", which is there already: leave it out");
         std::erase(absent, name);
       }
-      for (const std::string &name : scene_.stage[i].remove) {
+      for (const std::string &name : keys->remove) {
         if (std::find(absent.begin(), absent.end(), name) != absent.end())
           reader_.complain(path + ".remove", "removes body." + name +
                                                  ", which is not there: leave it out (a body that a stage adds is "
@@ -496,17 +474,14 @@ class Checks {
   }
 
   /// Bodies that come and go with a stage.
-  void bodies_of(const Stage &stage, const std::string &path) const {
+  void bodies_of(const StaticKeys &keys, const std::string &path) const {
     std::vector<std::string> bodies;
     for (const BodySource &body : scene_.body) bodies.push_back(body.name);
-    for (const auto &[key, named] : {std::pair{".add", &stage.add}, {".remove", &stage.remove}}) {
-      if (!named->empty() && !is_static(stage.kind))
-        reader_.complain(path + key, "belongs to quasi-static stages: set kind = \"quasi_static\"");
+    for (const auto &[key, named] : {std::pair{".add", &keys.add}, {".remove", &keys.remove}})
       for (const std::string &name : *named)
         if (std::find(bodies.begin(), bodies.end(), name) == bodies.end())
           reader_.complain(path + key,
                            "must name bodies; there is no [body." + name + "]; " + suggestion(name, bodies));
-    }
   }
 
   /// Opposite corners, the smaller coordinates first.

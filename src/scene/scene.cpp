@@ -28,8 +28,8 @@ std::array<double, 3> Scene::upward() const {
 std::array<double, 3> Scene::acceleration_in(const Stage &one) const {
   std::array<double, 3> acceleration{};
   std::copy(gravity.begin(), gravity.end(), acceleration.begin());
-  for (std::size_t d = 0; d < one.seismic_coefficient.size(); ++d)
-    acceleration[d] += gravity_size() * one.seismic_coefficient[d];
+  const std::vector<double> &parts = one.seismic_coefficient();
+  for (std::size_t d = 0; d < parts.size(); ++d) acceleration[d] += gravity_size() * parts[d];
   return acceleration;
 }
 

@@ -1,91 +1,42 @@
 #pragma once
-/// [[stage]]: what happens one after another.
+/// [[stage]]: what happens one after another. Keys that all stages have, and the list of kinds: one name to add one.
+/// What they do: simulation/stages.
+#include <algorithm>
+#include <concepts>
 #include <string>
+#include <type_traits>
+#include <variant>
 #include <vector>
 
 #include "base/units.h"
 #include "scene/required.h"
+#include "scene/stages/consolidation.h"
+#include "scene/stages/dynamic.h"
+#include "scene/stages/quasi_static.h"
+#include "scene/stages/seepage.h"
 
 namespace talus {
 
-enum class StageKind { dynamic, quasi_static, seepage, consolidation };
-enum class InitialStress { kept, k0 };
-enum class WhenLost { stop, go_on };
-enum class StopWhen { duration, equilibrium, rest, failure };
-
-/// Is it solved by finite elements?
-inline bool is_static(StageKind kind) { return kind != StageKind::dynamic; }
-/// Does pore water flow in it by finite elements?
-inline bool water_flows(StageKind kind) { return kind == StageKind::seepage || kind == StageKind::consolidation; }
+using StageKinds = std::variant<DynamicKeys, QuasiStaticKeys, SeepageKeys, ConsolidationKeys>;
 
 struct Stage {
   std::string name;
-  StageKind kind = StageKind::dynamic;
+  StageKinds kind;
   double duration = required;  ///< longest duration [s]
-  StopWhen until = StopWhen::duration;
-  double damping = 0;           ///< local (Cundall) damping factor alpha [-]
-  double gravity_ramp = 0;      ///< gravity and pore pressure grow linearly over this time [s]
-  double force_ratio = 1e-3;    ///< equilibrium: unbalanced over applied force [-]
-  double energy_ratio = 1e-6;   ///< equilibrium: kinetic over strain energy [-]
-  double rest_speed = 1e-3;     ///< rest: the root mean square speed of all soil stays below this [m/s]
-  std::string failure_point;    ///< failure: named output point that is watched
-  double failure_speed = 0.01;  ///< failure: its mean speed passes this [m/s] ...
-  double failure_time = 1;      ///< ... over this time [s]
-  bool pore_flow = true;        ///< pore fluids move; false: pore pressures are those of [water], as in a drained scene
-  bool softening = true;        ///< soil remembers plastic strain; false: it keeps the strength it has
-  bool hold_loads = false;      ///< functions of time stand still: their t counts only stages that do not hold loads
+  bool pore_flow = true;       ///< pore fluids move; false: pore pressures are those of [water], as in a drained
+                               ///< scene
+  bool softening = true;       ///< soil remembers plastic strain; false: it keeps the strength it has
+  bool hold_loads = false;     ///< functions of time stand still: their t counts only stages that do not hold loads
   bool reset_displacement = false;  ///< displacements, velocities and plastic strain are zeroed when the stage ends
-  // quasi-static stages
-  int load_steps = 5;  ///< in which loads come; fewer or more as Newton's iterations ask for
-  InitialStress initial_stress = InitialStress::kept;
-  std::vector<std::string> add, remove;  ///< bodies that come and go with the stage
-  WhenLost when_lost = WhenLost::stop;
-  bool steady = false;                      ///< seepage: the flow that the loads at the stage's end keep up
-  std::vector<double> seismic_coefficient;  ///< pseudo-static inertia over weight, by axis [-]; empty: none
-  /// Is the soil brought to rest, so that damping does no harm?
-  bool settles() const { return until == StopWhen::equilibrium || gravity_ramp > 0; }
   template <class Visitor>
   void fields(Visitor &&v) {
     v.text("name", name, "name of the stage in logs and results; default: its number, from 0");
-    v.choice("kind", kind,
-             {{"dynamic", StageKind::dynamic},
-              {"quasi_static", StageKind::quasi_static},
-              {"seepage", StageKind::seepage},
-              {"consolidation", StageKind::consolidation}},
+    v.one_of("kind", kind,
              "motion by the material point method, or by finite elements: static equilibrium, flow of pore water "
              "through soil at rest, or consolidation (both in time)");
-    v.choice("until", until,
-             {{"duration", StopWhen::duration},
-              {"equilibrium", StopWhen::equilibrium},
-              {"rest", StopWhen::rest},
-              {"failure", StopWhen::failure}},
-             "criterion that ends the stage before its duration");
-    v.number("duration", duration, second, Range{0, 1e12, is_static(kind) ? Usual{} : Usual{0, 86400}},
+    v.number("duration", duration, second, Range{0, 1e12, is_static() ? Usual{} : Usual{0, 86400}},
              "longest duration of the stage. Motion takes steps shorter than a wave through a cell, and slides take "
              "seconds to minutes: what goes on for days belongs to stages of another kind");
-    v.number("gravity_ramp", gravity_ramp, second, Range{0, 1e9},
-             "time in which gravity and pore pressure increase linearly from 0");
-    v.number("damping", damping, one, Range{0, 0.99, settles() ? Usual{0, 0.8} : Usual{0, 0.1}},
-             "local (Cundall) damping factor; soil that slides is slowed by it, soil that settles (until = "
-             "\"equilibrium\" or a gravity_ramp) comes to rest fastest with 0.7");
-    v.point("seismic_coefficient", seismic_coefficient, one, Usual{0, 0.6},
-            "pseudo-static earthquake: inertia force over weight, one component per dimension, positive along the "
-            "axes, such as [0.15, 0]; it acts on soil and pore water, and the water table stays where it is");
-    v.number("force_ratio", force_ratio, one, Range{0, 1, {1e-6, 0.05}},
-             "equilibrium: largest ratio of unbalanced to applied nodal forces");
-    v.number("energy_ratio", energy_ratio, one, Range{0, 1, {1e-12, 1e-2}},
-             "equilibrium: largest ratio of kinetic to elastic strain energy");
-    v.number("rest_speed", rest_speed, metre_per_second, Range{0, 1e6, {1e-5, 0.1}},
-             "rest: the root mean square speed of all soil remains below this value and does not rise; a stage "
-             "does not end while what acts has still to change within its duration, or pore fluids move, unless "
-             "hold_loads = true");
-    v.text("failure_point", failure_point, "failure: name of the output point whose velocity is tested");
-    v.number("failure_speed", failure_speed, metre_per_second, Range{0, 1e6, {1e-4, 1}},
-             "failure: speed that the mean velocity of the point over failure_time must exceed");
-    v.number("failure_time", failure_time, second, Range{0, 1e9, {0.01, 60}},
-             "failure: time of this mean, no shorter than the period of the slowest vibration; from half of it on, the "
-             "soil must "
-             "store less than a fifth of the energy that it receives");
     v.flag(
         "pore_flow", pore_flow,
         "pore fluids move; if false, pore pressures are those of [water], scaled by the ramp, as for initial stress");
@@ -97,18 +48,49 @@ struct Stage {
            "functions of time stand still: their t advances only in stages with hold_loads = false");
     v.flag("reset_displacement", reset_displacement,
            "set displacement, velocity and plastic strain to zero at the end of the stage");
-    v.integer(
-        "load_steps", load_steps, Range{1, 10000, {1, 200}},
-        "quasi-static: number of steps in which loads are applied; a step is halved where Newton's iterations fail");
-    v.choice("initial_stress", initial_stress, {{"kept", InitialStress::kept}, {"k0", InitialStress::k0}},
-             "quasi-static: stress at the start of the stage: the present stress, or vertical stress from the weight "
-             "above and k0 times it laterally");
-    v.texts("add", add, "quasi-static: bodies that this stage adds; they are absent before it");
-    v.texts("remove", remove, "quasi-static: bodies that this stage removes");
-    v.choice(
-        "when_lost", when_lost, {{"stop", WhenLost::stop}, {"next_stage", WhenLost::go_on}},
-        "quasi-static: if there is no equilibrium under the loads, end with status 1 or continue with the next stage");
-    v.flag("steady", steady, "seepage: compute the steady flow under the loads at the end of the stage");
+  }
+
+  StageTraits traits() const {
+    return std::visit([](const auto &one) { return one.traits; }, kind);
+  }
+  bool is_static() const { return traits().finite_elements; }
+  bool water_flows() const { return traits().water_flows; }
+  bool soil_moves() const { return traits().soil_moves; }
+  /// Does pore water flow through soil at rest?
+  bool seeps() const { return water_flows() && !soil_moves(); }
+  /// Does soil come to rest by finite elements?
+  bool settles_soil() const { return is_static() && soil_moves(); }
+  StopTraits stop() const { return motion() ? motion()->stop() : StopTraits{}; }
+
+  // Keys of some kinds; null, zero or none where the kind has none.
+
+  const DynamicKeys *motion() const { return std::get_if<DynamicKeys>(&kind); }
+  const StaticKeys *finite_elements() const { return keys<StaticKeys>(); }
+  double gravity_ramp() const { return motion() ? motion()->gravity_ramp : 0; }
+  double damping() const { return motion() ? motion()->damping : 0; }
+  bool begins_at_rest() const { return is_static() && finite_elements()->initial_stress == InitialStress::k0; }
+  bool adds(const std::string &body) const {
+    return is_static() && std::ranges::count(finite_elements()->add, body) > 0;
+  }
+  bool removes(const std::string &body) const {
+    return is_static() && std::ranges::count(finite_elements()->remove, body) > 0;
+  }
+  /// Pseudo-static inertia over weight, by axis; empty: none.
+  const std::vector<double> &seismic_coefficient() const {
+    static const std::vector<double> none;
+    const auto *seismic = keys<SeismicKeys>();
+    return seismic ? seismic->seismic_coefficient : none;
+  }
+
+ private:
+  template <class Keys>
+  const Keys *keys() const {
+    return std::visit(
+        [](const auto &one) -> const Keys * {
+          if constexpr (std::derived_from<std::decay_t<decltype(one)>, Keys>) return &one;
+          return nullptr;
+        },
+        kind);
   }
 };
 

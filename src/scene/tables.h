@@ -5,6 +5,7 @@
 #include "scene/boundary_source.h"
 #include "scene/factor_source.h"
 #include "scene/mesh_source.h"
+#include "scene/one_of.h"
 #include "scene/output_source.h"
 #include "scene/quasi_static_source.h"
 #include "scene/scene.h"

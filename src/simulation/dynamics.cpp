@@ -33,7 +33,7 @@ IntegratorSettings choose_integrator(const Scene &scene) {
     scene.complain("integrator.kind", "must be \"euler\", or \"arkode\" of order 3, where pore fluids move: " +
                                           problem + "; or take phases = \"dry\" or \"drained\"");
   for (size_t k = 0; k < scene.stage.size() && phases.gas; ++k)
-    if (is_static(scene.stage[k].kind))
+    if (scene.stage[k].is_static())
       scene.complain("stage." + std::to_string(k) + ".kind",
                      "must be \"dynamic\" where gas moves; quasi-static stages take any other phases");
   return settings;

@@ -70,7 +70,7 @@ template <int dim>
 FactorOfSafety Simulation<dim>::factor_of_safety() {
   const Scene &scene = run_.scene;
   for (size_t k = 0; k < scene.stage.size(); ++k)
-    if (!is_static(scene.stage[k].kind))
+    if (!scene.stage[k].is_static())
       scene.complain("stage." + std::to_string(k) + ".kind", "must be \"quasi_static\" for a factor of safety");
   check_strength(run_.world);
   if constexpr (dim == 3)

@@ -120,6 +120,15 @@ struct Fields {
     for (const auto &[name, meant] : choices)
       if (meant == value) object[key] = name;
   }
+  template <class Variant>
+  void one_of(const char *key, Variant &value, const char *) {
+    std::visit(
+        [&](auto &kind) {
+          object[key] = kind.name;
+          kind.fields(*this);
+        },
+        value);
+  }
 };
 
 /// Units by path of the table, kind ("": all kinds) and key.

@@ -212,7 +212,7 @@ RunRow<dim> Recorder<dim>::run_row() const {
   row.load_time = of_.clock.load_time;
   row.escaped = world.escaped.sums();
   row.fluids.resize(phases_.fluids());
-  if (std::ranges::any_of(scene_.stage, [](const Stage &stage) { return is_static(stage.kind); }))
+  if (std::ranges::any_of(scene_.stage, [](const Stage &stage) { return stage.is_static(); }))
     row.handed.resize(row.fluids.size());
   for (size_t s = 0; s < world.conditions.sources().size(); ++s) {
     const auto &source = world.conditions.sources()[s];

@@ -18,7 +18,7 @@ void Recorder<dim>::begin_stage(const Stage &stage) {
   if (!results_) return;
   const auto here = scene_.stage.begin() + (&stage - scene_.stage.data());
   results_->progress.stage(stage.name,
-                           std::none_of(here, scene_.stage.end(), [](const Stage &s) { return is_static(s.kind); }));
+                           std::none_of(here, scene_.stage.end(), [](const Stage &s) { return s.is_static(); }));
 }
 
 template <int dim>

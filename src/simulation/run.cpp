@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "scene/body_source.h"
 #include "scene/reader.h"
 #include "scene/scene.h"
 #include "scene/stage.h"
@@ -124,7 +123,7 @@ PetscErrorCode Run<dim>::serialize(Archive &archive) {
   PetscCall(serialize_state(archive));
   const bool staged = progress.number >= 0;  // a host program steps without stages
   if (archive.reading() && staged) stop = make_stop_criterion<dim>(stage());
-  if (staged) stop->serialize(archive);
+  if (stop) stop->serialize(archive);
   archive.serialize("moved before", moved_before);
   energies.serialize(archive);
   recorder.serialize(archive);
@@ -145,7 +144,7 @@ Holdings Run<dim>::holdings() const {
   Holdings mine{world.mesh.global_cell, world.mesh.global_node};
   // edges have nodes of finite elements, if not in a stage of this scene then in one of the run that it starts from
   if (!scene.start_from->folder.empty() ||
-      std::ranges::any_of(scene.stage, [](const Stage &s) { return is_static(s.kind); })) {
+      std::ranges::any_of(scene.stage, [](const Stage &s) { return s.is_static(); })) {
     const std::vector<long long> edges = world.mesh.global_edges();
     mine.points.insert(mine.points.end(), edges.begin(), edges.end());
   }
@@ -204,8 +203,7 @@ void Run<dim>::resume() {
   const auto changed = [this](const char *key) {
     return recorder.has_changed("stage." + std::to_string(progress.number) + "." + key);
   };
-  const bool waits_for_loads = stage().until == StopWhen::rest || stage().until == StopWhen::equilibrium;
-  if (changed("rest_speed") || (changed("duration") && waits_for_loads && !is_static(stage().kind))) {
+  if (changed("rest_speed") || (changed("duration") && stage().stop().waits_for_loads)) {
     progress.met = false;  // it has to stay below the new speed, and more loads may come within a longer duration
     stop = make_stop_criterion<dim>(stage());
   }
@@ -224,7 +222,7 @@ void Run<dim>::start_from_other_run() {
     const std::vector<std::string> changed = check_start(scene, found.header, recorder.checkpoint_header(-1));
     const std::vector<char> varies = world.strength_varies();
     for (std::size_t b = 0; b < varies.size(); ++b)
-      if (varies[b]) check_strength_by_place(scene, scene.body[b].name, changed);
+      if (varies[b]) check_strength_by_place(scene, world.bodies[b]->name(), changed);
     if (!found.passed_over.empty()) start_warning = found.passed_over + "; the checkpoint before it is taken";
     Archive archive = state_of(std::move(found));
     try {

@@ -169,7 +169,7 @@ void Simulation<dim>::begin() {
   if (run_.options.doubts_at_start)
     for (const std::string &sentence : run_.options.doubts_at_start(*this)) run_.recorder.warn(sentence);
   run_.recorder.write_history();
-  if (run_.options.gauss_points && is_static(run_.scene.stage.front().kind)) run_.statics.prepare();
+  if (run_.options.gauss_points && run_.scene.stage.front().is_static()) run_.statics.prepare();
   run_.recorder.write_snapshot();
   run_.begin_next_stage();
   run_.write_checkpoint();

@@ -131,7 +131,7 @@ void Statics<dim>::begin_stage(const Stage &stage, bool soil_moves) {
   require(world_.fix_dashpots(true, clock_.time));
   current_ = true, moved_since_ = false;
   check_supports(soil_moves);
-  if (stage.initial_stress == InitialStress::k0) start_stress();
+  if (stage.begins_at_rest()) start_stress();
   imposed_ += strain_energy() - before;
   problem_->set_acceleration(world_.scene.acceleration_in(stage));
   require(problem_->begin_path(clock_.load_time));

@@ -46,14 +46,14 @@ void World<dim>::choose_bodies(const Stage &stage, const Clock &clock) {
   const int stride = id_stride();
   for (size_t b = 0; b < bodies.size(); ++b) {
     const std::string &name = scene.body[b].name;
-    if (std::count(stage.add.begin(), stage.add.end(), name) && !present[b]) {
+    if (stage.adds(name) && !present[b]) {
       present[b] = 1;
       seed<dim>(*bodies[b], mesh, stride,
                 [&](const Vec<dim> &x) { return soil_density(scene.body[b], x, clock.load_time); });
       conditions.surface_loads().seed(*bodies[b], mesh);
       require(bodies[b]->sort(mesh.cell_count()));
     }
-    if (std::count(stage.remove.begin(), stage.remove.end(), name) && present[b]) {
+    if (stage.removes(name) && present[b]) {
       present[b] = 0;
       require(bodies[b]->resize(0));
     }
@@ -63,15 +63,15 @@ void World<dim>::choose_bodies(const Stage &stage, const Clock &clock) {
 
 template <int dim>
 void World<dim>::set_loading(const Stage &stage, double stage_time, const Clock &clock) {
-  const double ramp = stage.gravity_ramp > 0 ? std::min(1., stage_time / stage.gravity_ramp) : 1;
+  const double whole_at = stage.gravity_ramp(), ramp = whole_at > 0 ? std::min(1., stage_time / whole_at) : 1;
   const std::array<double, 3> acceleration = scene.acceleration_in(stage);
   std::copy_n(acceleration.begin(), dim, motion->loading.gravity.begin());
   motion->loading.ramp = ramp;
-  motion->loading.ramp_rate = ramp < 1 ? 1 / stage.gravity_ramp : 0;
+  motion->loading.ramp_rate = ramp < 1 ? 1 / whole_at : 0;
   motion->loading.set_at = clock.time;
   motion->loading.time_rate = stage.hold_loads ? 0 : 1;
   motion->loading.time = clock.load_time;
-  motion->loading.damping = stage.damping;
+  motion->loading.damping = stage.damping();
   motion->loading.softening = stage.softening;
   conditions.bases().remember_slip(stage.softening);
   motion->loading.pore_flow = stage.pore_flow;
@@ -373,7 +373,7 @@ PetscErrorCode World<dim>::serialize(Archive &archive) {
 }
 
 bool has_flow_stages(const Scene &scene) {
-  return std::any_of(scene.stage.begin(), scene.stage.end(), [](const Stage &s) { return water_flows(s.kind); });
+  return std::any_of(scene.stage.begin(), scene.stage.end(), [](const Stage &s) { return s.water_flows(); });
 }
 
 template class World<2>;

@@ -111,7 +111,7 @@ void World<dim>::check_something_acts(const std::vector<Source> &sources) const 
   });
   if (moved || pushed || scene.gravity_size() > 0 || scene.water->given || scene.gas->given) return;
   for (size_t k = 0; k < scene.stage.size(); ++k)
-    if (scene.stage[k].until == StopWhen::equilibrium || scene.stage[k].until == StopWhen::rest)
+    if (scene.stage[k].stop().waits_for_loads)
       scene.complain("stage." + std::to_string(k) + ".until",
                      "waits for soil on which nothing acts: give gravity, or a boundary that loads or moves the soil");
 }
@@ -176,9 +176,9 @@ template <int dim>
 void World<dim>::check_fresh_base(const std::string &path) const {
   const Stage *changes = nullptr;
   for (const Stage &stage : scene.stage) {
-    if (stage.kind == StageKind::dynamic && stage.softening) changes = &stage;
+    if (!stage.is_static() && stage.softening) changes = &stage;
     if (stage.reset_displacement) changes = nullptr;
-    if (changes && is_static(stage.kind) && stage.kind != StageKind::seepage)
+    if (changes && stage.settles_soil())
       scene.complain(path + ".kind", "depends on the slip of the base, which finite elements do not know: stage " +
                                          stage.name + " cannot follow the motion of stage " + changes->name +
                                          "; put it before, set softening = false or reset_displacement = true there, "
@@ -190,7 +190,7 @@ template <int dim>
 void World<dim>::check_boundaries(const std::vector<Source> &sources) const {
   check_something_acts(sources);
   const bool quasi_static =
-      std::any_of(scene.stage.begin(), scene.stage.end(), [](const Stage &stage) { return is_static(stage.kind); });
+      std::any_of(scene.stage.begin(), scene.stage.end(), [](const Stage &stage) { return stage.is_static(); });
   for (const auto &source : sources) {
     const std::string path = "boundary." + source.name;
     std::vector<std::string> groups = mesh.group_names();

@@ -340,9 +340,8 @@ void World<dim>::find_fastest_fall() {
 /// Does a stage add or remove the body?
 template <int dim>
 bool World<dim>::comes_or_goes(const BodySource &body) const {
-  return std::ranges::any_of(scene.stage, [&](const Stage &stage) {
-    return std::ranges::count(stage.add, body.name) || std::ranges::count(stage.remove, body.name);
-  });
+  return std::ranges::any_of(scene.stage,
+                             [&](const Stage &stage) { return stage.adds(body.name) || stage.removes(body.name); });
 }
 
 template <int dim>
@@ -350,7 +349,7 @@ std::vector<char> World<dim>::present_at_start() const {
   std::vector<char> there(scene.body.size(), 1);
   for (const Stage &stage : scene.stage)
     for (size_t b = 0; b < scene.body.size(); ++b)
-      if (std::count(stage.add.begin(), stage.add.end(), scene.body[b].name)) there[b] = 0;
+      if (stage.adds(scene.body[b].name)) there[b] = 0;
   return there;
 }
 

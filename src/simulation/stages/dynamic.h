@@ -16,7 +16,7 @@ namespace talus {
 template <int dim>
 class DynamicStage final : public StageRunner<dim> {
  public:
-  explicit DynamicStage(Run<dim> &run) : run_(run), stage_(run.stage()) {}
+  DynamicStage(Run<dim> &run, const DynamicKeys &keys) : run_(run), stage_(run.stage()), keys_(keys) {}
 
   void run() override {
     begin();
@@ -92,7 +92,7 @@ class DynamicStage final : public StageRunner<dim> {
   }
 
   void finish() {
-    if (!run_.progress.met && !run_.progress.told && run_.stop->early() && !run_.is_past_stage()) note_unmet();
+    if (!run_.progress.met && !run_.progress.told && keys_.stop().early && !run_.is_past_stage()) note_unmet();
     run_.progress.told = true;
     run_.recorder.write_history();
     run_.recorder.write_snapshot();
@@ -116,12 +116,12 @@ class DynamicStage final : public StageRunner<dim> {
     text << "the slide has not come to rest at t = " << run_.clock.time << " s: " << left->sentence() << "; ";
     if (!run_.progress.met)
       text << "a longer duration of the stage " << stage_.name;
-    else if (stage_.until == StopWhen::rest)  // of all soil, most of which may stand
+    else if (keys_.stop().by_mean_speed)  // of all soil, most of which may stand
       text << "the rms speed of all soil is below rest_speed, and a smaller rest_speed of the stage " << stage_.name;
     else
       text << "a further stage";
     text << " would show where it stops";
-    if (run_.recorder.writes() && (!run_.progress.met || stage_.until == StopWhen::rest))
+    if (run_.recorder.writes() && (!run_.progress.met || keys_.stop().by_mean_speed))
       text << " (--resume goes on with it)";
     run_.motion_left = text.str();
   }
@@ -134,18 +134,14 @@ class DynamicStage final : public StageRunner<dim> {
     text << "stage " << stage_.name << " reached its duration of " << stage_.duration
          << " s before its stop criterion was met: unbalanced force ratio " << sums.ratio()
          << ", kinetic over strain energy " << (sums.kinetic > 0 ? sums.kinetic / sums.strain : 0) << ", rms speed "
-         << speed << " m/s";
-    if (stage_.until == StopWhen::rest && speed < stage_.rest_speed) {
-      const std::string why = run_.stop->waits_for();
-      text << ", which is below rest_speed"
-           << (why.empty() ? " but has not stayed there without rising" : " but is no rest: " + why);
-    }
+         << speed << " m/s" << run_.stop->unmet(speed);
     run_.recorder.note(text.str(), event::duration_over,
                        {{"unbalanced_force_ratio", sums.ratio()}, {"rms_speed_m_s", speed}});
   }
 
   Run<dim> &run_;
   const Stage &stage_;
+  const DynamicKeys &keys_;
   double history_interval_ = 0, checkpoint_interval_ = 0;  ///< [s]
 };
 

@@ -17,13 +17,14 @@ class FlowStage : public StaticStage<dim> {
 
  protected:
   using typename StaticStage<dim>::Path;
-  bool water_flows() const final { return true; }
+  /// Is the flow that of the loads at the end, which lasts?
+  virtual bool steady() const { return false; }
   void follow(Path &path) final {
     const Stage &stage = this->stage_;
     Statics<dim> &statics = this->run_.statics;
     FlowPath flow{stage.duration,
-                  stage.steady,
-                  stage.load_steps,
+                  steady(),
+                  this->keys_.load_steps,
                   stage.softening,
                   [this](double share) { return this->load_at(share); },
                   [this](double share) { this->done(share); },
@@ -57,7 +58,7 @@ class FlowStage : public StaticStage<dim> {
   /// Shares of the stage at which what acts changes.
   std::vector<double> events() const {
     const Stage &stage = this->stage_;
-    if (stage.hold_loads || stage.steady) return {};
+    if (stage.hold_loads || steady()) return {};
     const auto &[low, high] = this->run_.world.mesh_box;
     const double begin = this->load_at(0), end = this->load_at(1);
     std::vector<double> shares = load_events(this->run_.scene, low, high, begin, end);

@@ -20,7 +20,7 @@ class LoadsToCome {
   std::string operator()(const Run<dim> &run) {
     const Stage &stage = run.stage();
     const double since_begin = run.clock.time - run.progress.begin;
-    if (since_begin < stage.gravity_ramp) return "gravity still increases";
+    if (since_begin < stage.gravity_ramp()) return "gravity still increases";
     if (stage.hold_loads) return "";
     if (!known_) loads_ = changing_loads(run.scene), known_ = true;
     const double now = run.clock.load_time, end = now + stage.duration - since_begin;

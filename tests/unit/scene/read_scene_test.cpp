@@ -300,7 +300,33 @@ TEST(ReadScene, AddsAnEarthquakeToGravity) {
 
 TEST(ReadScene, TakesAFailureStageThatWatchesAnOutputPoint) {
   const Scene scene = parse_scene(dry, "slope.toml", {"stage.0.until=failure", "stage.0.failure_point=crest"});
-  EXPECT_EQ(scene.stage[0].until, StopWhen::failure);
+  ASSERT_TRUE(scene.stage[0].motion());
+  EXPECT_EQ(std::get<AtFailure>(scene.stage[0].motion()->until).failure_point, "crest");
+  EXPECT_TRUE(scene.stage[0].stop().early);
+  EXPECT_FALSE(scene.stage[0].stop().waits_for_loads);
+}
+
+/// What the program asks of a kind of stage.
+TEST(ReadScene, KnowsTheTraitsOfStages) {
+  const auto stage = [](const std::string &kind) {
+    const std::string more = kind == "dynamic" ? "" : "load_steps = 7\nadd = ['fill']\ninitial_stress = 'k0'\n";
+    Scene scene = parse_scene(
+        "phases = 'saturated'\ngravity = 10\n[mesh]\nfile = 'a'\n[body.fill]\nregion = 'a'\nporosity = 0.4\n"
+        "grain_density = 2650\npermeability = 1e-12\n[water]\n[[stage]]\nduration = 1\nkind = '" +
+            kind + "'\n" + more,
+        "a.toml");
+    return scene.stage[0];
+  };
+  const Stage moves = stage("dynamic"), rests = stage("quasi_static"), seeps = stage("seepage"),
+              consolidates = stage("consolidation");
+  EXPECT_FALSE(moves.is_static() || moves.water_flows() || moves.finite_elements() || moves.begins_at_rest());
+  EXPECT_TRUE(rests.is_static() && rests.soil_moves() && !rests.water_flows() && !rests.motion());
+  EXPECT_TRUE(seeps.is_static() && !seeps.soil_moves() && seeps.water_flows() && seeps.seeps());
+  EXPECT_TRUE(consolidates.is_static() && consolidates.soil_moves() && consolidates.water_flows());
+  for (const Stage &one : {rests, seeps, consolidates}) {
+    EXPECT_EQ(one.finite_elements()->load_steps, 7);
+    EXPECT_TRUE(one.adds("fill") && !one.removes("fill") && one.begins_at_rest());
+  }
 }
 
 TEST(ReadScene, LeavesTheMeshToAHost) {
