@@ -70,6 +70,7 @@ FactorOfSafety Rung::factor_of_safety(const std::vector<std::string> &overrides)
   if (compared_) wall_seconds_ = 0, compared_ = false;
   const auto begin = std::chrono::steady_clock::now();
   Scene scene = read_scene(scene_, overrides);
+  scene.add_factor_stage();
   RunOptions options;
   options.pictures = options.screen = false, options.gauss_points = true;
   const FactorOfSafety factor = make_simulation(PETSC_COMM_WORLD, scene, options)->factor_of_safety();

@@ -177,7 +177,7 @@ class Adviser {
     }
     if (!loads.empty())
       say(off + "the load at which stage " + loads + " finds no more equilibrium is not unique: " + not_unique + ".");
-    if (scene_.root->has("factor_of_safety"))
+    if (scene_.root->has("factor_of_safety") || scene_.finds_factor())
       say(off +
           "its factor of safety differs by some per cent from mesh to mesh; compute it with two. It is given "
           "between an upper bound, psi = phi, and a lower estimate, the strength of Davis (1968), " +

@@ -248,8 +248,9 @@ Needs find_needs(Scene &scene, bool with_model) {
   needs.snapshots = 1;
   for (const Stage &stage : scene.stage) {
     if (stage.is_static()) {  // by finite elements: no waves, no steps of the motion
-      needs.stages.push_back(
-          {stage.name, stage.duration, static_cast<double>(stage.finite_elements()->load_steps), 0, 0});
+      needs.stages.push_back({stage.name, stage.duration,
+                              stage.finite_elements() ? static_cast<double>(stage.finite_elements()->load_steps) : 0, 0,
+                              0});
       continue;
     }
     const double steps = std::ceil(stage.duration / needs.step);

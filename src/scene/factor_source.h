@@ -6,7 +6,8 @@
 
 namespace talus {
 
-/// Where `talus solve --factor-of-safety` divides strength, and how many mechanisms it searches for.
+/// Where stages of kind = "factor_of_safety", and `talus solve --factor-of-safety`, divide strength, and how many
+/// mechanisms they search for.
 struct FactorSource {
   std::vector<std::vector<double>> within;  ///< polygon x, elevation [m]; empty: everywhere
   std::vector<std::vector<double>> along;   ///< line x, elevation [m]; empty: everywhere

@@ -1,6 +1,7 @@
 /// Reading a scene as a whole, and what its keys demand of one another.
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iterator>
 #include <sstream>
 #include <tuple>
@@ -38,10 +39,9 @@ class Checks {
       for (std::vector<double> &point : line.points) into_middle(point);
       followed_line(line);
     }
-    for (std::size_t i = 0; i < scene_.stage.size(); ++i) {
+    for (std::size_t i = 0; i < scene_.stage.size(); ++i)
       if (scene_.stage[i].name.empty()) scene_.stage[i].name = std::to_string(i);
-      stage(scene_.stage[i], "stage." + std::to_string(i));
-    }
+    for (std::size_t i = 0; i < scene_.stage.size(); ++i) stage(scene_.stage[i], "stage." + std::to_string(i));
     bodies_that_come_and_go();
     factor_of_safety();
     if (scene_.start_from->reset_displacement && scene_.start_from->folder.empty())
@@ -403,8 +403,26 @@ class Checks {
       reader_.complain(path + ".initial_stress",
                        "needs gravity along -" + up() + ", since it counts the soil above along " + up() +
                            "; give the stress by body.NAME.stress where the axes are inclined");
+    if (stage.finds_factor()) factor(stage, path);
     const auto *fails = stage.motion() ? std::get_if<AtFailure>(&stage.motion()->until) : nullptr;
     if (fails) failure(*fails, path);
+  }
+
+  /// It judges what finite elements have found, and its results have the name of the stage where there are several.
+  void factor(const Stage &stage, const std::string &path) const {
+    const auto here = std::make_reverse_iterator(scene_.stage.begin() + (&stage - scene_.stage.data()));
+    const auto before = std::find_if_not(here, scene_.stage.rend(), std::mem_fn(&Stage::finds_factor));
+    if (before == scene_.stage.rend())
+      reader_.complain(path + ".kind",
+                       "needs a stage before it, whose soil it judges: put one of kind = \"quasi_static\" first");
+    if (!before->is_static())
+      reader_.complain(path + ".kind",
+                       "cannot judge the motion of the stage before it: put a stage of kind = "
+                       "\"quasi_static\" between them");
+    const auto same = [&](const Stage &other) { return other.finds_factor() && other.name == stage.name; };
+    if (stage.name.find('/') != std::string::npos || std::ranges::count_if(scene_.stage, same) > 1)
+      reader_.complain(path + ".name",
+                       "must be a name of its own without /, since results of the stage are factor_of_safety_NAME.csv");
   }
 
   void flow(const Stage &stage, const std::string &path) const {

@@ -33,6 +33,16 @@ std::array<double, 3> Scene::acceleration_in(const Stage &one) const {
   return acceleration;
 }
 
+bool Scene::finds_factor() const {
+  return std::ranges::any_of(stage, [](const Stage &one) { return one.finds_factor(); });
+}
+
+void Scene::add_factor_stage() {
+  if (stage.back().finds_factor()) return;
+  Stage &added = stage.emplace_back();
+  added.name = "strength reduction", added.kind = FactorKeys{}, added.duration = 0, added.hold_loads = true;
+}
+
 std::string Scene::function_fault() const { return root ? root->function_fault() : ""; }
 void Scene::forget_function_faults() const {
   if (root) root->forget_function_faults();

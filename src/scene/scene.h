@@ -67,6 +67,10 @@ struct Scene {
   int vertical() const { return static_cast<int>(up); }
   /// Unit vector against gravity, without gravity along `up`; zero beyond the dimension.
   std::array<double, 3> upward() const;
+  /// Adds a stage that looks for the factor of safety, unless the last one does.
+  void add_factor_stage();
+  /// Does a stage look for the factor of safety?
+  bool finds_factor() const;
   /// The first value of a function that its key does not admit, on this rank; empty if there was none.
   std::string function_fault() const;
   /// Takes faults for never made: those of a trial beyond the end of the run.

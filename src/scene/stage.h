@@ -12,12 +12,13 @@
 #include "scene/required.h"
 #include "scene/stages/consolidation.h"
 #include "scene/stages/dynamic.h"
+#include "scene/stages/factor_of_safety.h"
 #include "scene/stages/quasi_static.h"
 #include "scene/stages/seepage.h"
 
 namespace talus {
 
-using StageKinds = std::variant<DynamicKeys, QuasiStaticKeys, SeepageKeys, ConsolidationKeys>;
+using StageKinds = std::variant<DynamicKeys, QuasiStaticKeys, SeepageKeys, ConsolidationKeys, FactorKeys>;
 
 struct Stage {
   std::string name;
@@ -33,7 +34,11 @@ struct Stage {
     v.text("name", name, "name of the stage in logs and results; default: its number, from 0");
     v.one_of("kind", kind,
              "motion by the material point method, or by finite elements: static equilibrium, flow of pore water "
-             "through soil at rest, or consolidation (both in time)");
+             "through soil at rest, or consolidation (both in time), or the factor of safety");
+    if (finds_factor()) {
+      duration = 0, hold_loads = true;
+      return;
+    }
     v.number("duration", duration, second, Range{0, 1e12, is_static() ? Usual{} : Usual{0, 86400}},
              "longest duration of the stage. Motion takes steps shorter than a wave through a cell, and slides take "
              "seconds to minutes: what goes on for days belongs to stages of another kind");
@@ -56,6 +61,7 @@ struct Stage {
   bool is_static() const { return traits().finite_elements; }
   bool water_flows() const { return traits().water_flows; }
   bool soil_moves() const { return traits().soil_moves; }
+  bool finds_factor() const { return traits().finds_factor; }
   /// Does pore water flow through soil at rest?
   bool seeps() const { return water_flows() && !soil_moves(); }
   /// Does soil come to rest by finite elements?
@@ -68,12 +74,12 @@ struct Stage {
   const StaticKeys *finite_elements() const { return keys<StaticKeys>(); }
   double gravity_ramp() const { return motion() ? motion()->gravity_ramp : 0; }
   double damping() const { return motion() ? motion()->damping : 0; }
-  bool begins_at_rest() const { return is_static() && finite_elements()->initial_stress == InitialStress::k0; }
+  bool begins_at_rest() const { return finite_elements() && finite_elements()->initial_stress == InitialStress::k0; }
   bool adds(const std::string &body) const {
-    return is_static() && std::ranges::count(finite_elements()->add, body) > 0;
+    return finite_elements() && std::ranges::count(finite_elements()->add, body) > 0;
   }
   bool removes(const std::string &body) const {
-    return is_static() && std::ranges::count(finite_elements()->remove, body) > 0;
+    return finite_elements() && std::ranges::count(finite_elements()->remove, body) > 0;
   }
   /// Pseudo-static inertia over weight, by axis; empty: none.
   const std::vector<double> &seismic_coefficient() const {

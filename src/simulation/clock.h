@@ -6,7 +6,8 @@
 
 namespace talus {
 
-/// Stage of the mechanism of a factor of safety, the last row of the history and the last snapshot.
+/// Stage of the mechanism of a factor of safety, the last row of the history and the last snapshot of a run that ends
+/// with one.
 inline constexpr const char *strength_reduction = "strength reduction";
 
 struct Clock {

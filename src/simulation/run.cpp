@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <functional>
 
 #include "scene/reader.h"
 #include "scene/scene.h"
@@ -266,6 +267,12 @@ const Stage &Run<dim>::stage() const {
 template <int dim>
 bool Run<dim>::last_stage() const {
   return progress.number + 1 == static_cast<int>(scene.stage.size());
+}
+
+template <int dim>
+bool Run<dim>::leads_to_factor() const {
+  return scene.stage.back().finds_factor() &&
+         std::all_of(scene.stage.begin() + progress.number, scene.stage.end(), std::mem_fn(&Stage::is_static));
 }
 
 template <int dim>

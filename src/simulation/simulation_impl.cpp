@@ -40,6 +40,14 @@ void Simulation<dim>::run() {
   run_.recorder.close(run_.motion_left);
 }
 
+template <int dim>
+FactorOfSafety Simulation<dim>::factor_of_safety() {
+  if (run_.clock.steps == 0) run();
+  if (run_.factors.empty())
+    throw RunError("the scene has no stage of kind = \"factor_of_safety\" that was carried out");
+  return run_.factors.back();
+}
+
 /// What is unlikely of the state at the end. Collective.
 template <int dim>
 void Simulation<dim>::note_state() {

@@ -4,6 +4,7 @@
 #include "simulation/drains.h"
 #include "simulation/model.h"
 #include "simulation/run.h"
+#include "simulation/stages/factor_of_safety.h"
 
 namespace talus {
 
@@ -11,12 +12,14 @@ template <int dim>
 class Simulation final : public AnySimulation {
  public:
   Simulation(MPI_Comm comm, const Scene &scene, const RunOptions &options, const std::string &mesh_file)
-      : run_(comm, scene, options, mesh_file) {}
+      : run_(comm, scene, options, mesh_file) {
+    if (scene.finds_factor()) check_strength(run_.world);
+  }
 
   void run() override;
   void advance_to(double t) override;
   double single_step() override;
-  FactorOfSafety factor_of_safety() override;  // factor_of_safety.cpp
+  FactorOfSafety factor_of_safety() override;
 
   double time() const override { return run_.clock.time; }
   long long steps() const override { return run_.clock.steps; }
@@ -54,7 +57,6 @@ class Simulation final : public AnySimulation {
   void note_dilation();
   void run_stages();
   void step_until(double t);
-  FactorOfSafety reduce_strength();
   template <class Act>
   auto told(Act &&act);
 

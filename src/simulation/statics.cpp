@@ -466,7 +466,7 @@ void Statics<dim>::each_gauss_point(
 
 template <int dim>
 Elements Statics<dim>::elements() const {
-  return for_factor ? Elements::quadratic : world_.scene.quasi_static->elements;
+  return world_.scene.finds_factor() ? Elements::quadratic : world_.scene.quasi_static->elements;
 }
 
 template class Statics<2>;

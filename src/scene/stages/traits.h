@@ -7,6 +7,7 @@ struct StageTraits {
   bool finite_elements = false;  ///< solved by them; otherwise particles move
   bool water_flows = false;      ///< pore water flows in it by finite elements
   bool soil_moves = true;        ///< otherwise the soil is at rest, and only its water moves
+  bool finds_factor = false;     ///< it only judges the state of the stage before it, and has no duration
   const char *end = "";          ///< what it ends with, in words; empty: with its stop criterion
 };
 

@@ -24,7 +24,7 @@ class EquilibriumStage final : public StaticStage<dim> {
     };
     // a trial of the factor finds it sooner than small steps do; friction of a base has no bound by psi = phi
     std::function<PetscErrorCode(StepOutcome *)> failure;
-    if (this->run_.statics.for_factor && !on_base())
+    if (this->run_.leads_to_factor() && !on_base())
       failure = [&](StepOutcome *outcome) {
         return find_failure(problem, this->run_.world.laws, this->load_at(1), this->run_.clock.time, outcome);
       };
@@ -40,7 +40,7 @@ class EquilibriumStage final : public StaticStage<dim> {
   /// In the first stage the share of gravity that was reached says nothing of the soil, and so long as no strength is
   /// lost, another way to the state under all of it will do. Later stages end where their loads find no equilibrium.
   bool may_settle(const Path &path) const {
-    const bool may_go_on = this->keys_.when_lost != WhenLost::stop && !this->run_.statics.for_factor;
+    const bool may_go_on = this->keys_.when_lost != WhenLost::stop && !this->run_.leads_to_factor();
     const bool loses_strength = this->stage_.softening && std::ranges::any_of(this->run_.world.laws, softens);
     return this->run_.progress.number == 0 && this->run_.scene.start_from->folder.empty() && !may_go_on &&
            !loses_strength && !path.last.stopped && !path.last.fails && !on_base() &&

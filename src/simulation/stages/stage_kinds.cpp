@@ -3,6 +3,7 @@
 #include "simulation/stages/consolidation.h"
 #include "simulation/stages/dynamic.h"
 #include "simulation/stages/equilibrium.h"
+#include "simulation/stages/factor_of_safety.h"
 #include "simulation/stages/seepage.h"
 
 namespace talus {
@@ -15,6 +16,8 @@ template <int dim>
 SeepageStage<dim> runner_of(const SeepageKeys &);
 template <int dim>
 ConsolidationStage<dim> runner_of(const ConsolidationKeys &);
+template <int dim>
+FactorStage<dim> runner_of(const FactorKeys &);
 
 template <int dim>
 std::unique_ptr<StageRunner<dim>> make_stage_runner(Run<dim> &run) {

@@ -212,7 +212,7 @@ class StaticStage : public StageRunner<dim> {
       else if (soil_moves() && !path_.last.fails && !path_.last.dry && !path_.last.shut)
         text << "; the slope may be too weak to stand, or other load_steps (here " << keys_.load_steps
              << ") may help, or, where the stage is the first, initial_stress = \"k0\"";
-      const bool goes_on = run_.statics.for_factor && !water_flows();
+      const bool goes_on = run_.leads_to_factor() && !water_flows();
       if (goes_on && stage_.softening && std::ranges::any_of(run_.world.laws, softens))
         fail(text.str() +
              "; there is no factor of safety, since the strength that is left depends on how far the "

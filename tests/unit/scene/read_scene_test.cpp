@@ -329,6 +329,20 @@ TEST(ReadScene, KnowsTheTraitsOfStages) {
   }
 }
 
+/// The stage that `talus solve --factor-of-safety` adds is the one that a scene may have.
+TEST(ReadScene, MayLookForAFactorOfSafety) {
+  Scene scene = parse_scene(dry, "slope.toml", {"stage.0.kind=quasi_static"});
+  EXPECT_FALSE(scene.finds_factor());
+  scene.add_factor_stage();
+  scene.add_factor_stage();
+  ASSERT_EQ(scene.stage.size(), 2u);
+  EXPECT_TRUE(scene.finds_factor() && scene.stage[1].is_static() && !scene.stage[1].soil_moves());
+  const Scene given = parse_scene(std::string(dry) + "\n[[stage]]\nkind = 'factor_of_safety'\n", "slope.toml",
+                                  {"stage.0.kind=quasi_static"});
+  EXPECT_TRUE(given.stage[1].finds_factor());
+  EXPECT_EQ(given.stage[1].duration, 0);
+}
+
 TEST(ReadScene, LeavesTheMeshToAHost) {
   const std::string rest = "[body.a]\nregion = 'a'\ndensity = 2000\nlaw = 'linear_elastic'\n[[stage]]\nduration = 1\n";
   EXPECT_EQ(parse_host_scene(rest, "host").body[0].name, "a");
