@@ -13,6 +13,7 @@
 
 #include "base/units.h"
 #include "scene/deferred.h"
+#include "scene/earthquake_source.h"
 #include "scene/function.h"
 #include "scene/water_table.h"
 
@@ -660,6 +661,7 @@ struct Scene {
   Water water;
   Gas gas;
   std::vector<Stage> stage;
+  std::vector<EarthquakeSource> earthquake;  ///< components of the motion of the ground
   DeferredTable integrator;  ///< [integrator], read by solvers/
   Transfer transfer;
   QuasiStaticSource quasi_static;
@@ -689,6 +691,7 @@ struct Scene {
     v.table("water", water, "pore water");
     v.table("gas", gas, "pore gas");
     v.list("stage", stage, "stages in their order, [[stage]]");
+    v.list("earthquake", earthquake, "components of the motion of the ground in an earthquake, [[earthquake]]");
     v.deferred_table("integrator", integrator, "time integration");
     v.table("transfer", transfer, "exchange between particles and nodes");
     v.table("quasi_static", quasi_static, "finite elements of quasi-static stages");
