@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/archive.h"
+#include "earthquake/shaking.h"
 #include "physics/boundary/conditions.h"
 #include "physics/laws/present_strength.h"
 #include "physics/motion.h"
@@ -25,6 +26,8 @@ namespace talus {
 template <int dim>
 struct Loading {
   Vec<dim> gravity{};     ///< once the ramp of the stage is over [m/s2]
+  const GroundShaking *shaking = nullptr;  ///< of the base, in whose frame the soil is computed; null: it is at rest
+  double shaken_since = 0;                 ///< time of the run at which the motion begins [s]
   double ramp = 1;        ///< of the stage: gravity and with it pore pressure grow from 0 to 1
   double time = 0;        ///< load time: the t of the scene's functions [s]
   double set_at = 0;      ///< time of the run at which ramp and load time have these values [s], and their rates:
@@ -34,6 +37,15 @@ struct Loading {
   bool pore_flow = true;  ///< pore fluids move; otherwise their pressures are prescribed
   bool softening = true;  ///< plastic strain is recorded; otherwise soil keeps the strength it has
 
+  /// Gravity, and the inertia of what is at rest on the base, per mass [m/s2].
+  Vec<dim> gravity_at(double t) const {
+    Vec<dim> total = gravity;
+    for (double &g : total) g *= ramp_at(t);
+    if (!shaking) return total;
+    const std::array<double, 3> base = shaking->acceleration(t - shaken_since);
+    for (int d = 0; d < dim; ++d) total[d] -= base[d];
+    return total;
+  }
   double ramp_at(double t) const { return std::min(1., ramp + ramp_rate * (t - set_at)); }
   double time_at(double t) const { return time + time_rate * (t - set_at); }
 };

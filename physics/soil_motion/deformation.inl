@@ -140,9 +140,7 @@ PetscErrorCode SoilMotion<dim, Phases>::accept(double t, const double *u, const 
   PetscCall(deform(t, displacement, accepted_));
   accepted_time_ = t;
   conditions_.add_work(displacement);
-  Vec<dim> gravity = loading.gravity;
-  for (double &g : gravity) g *= loading.ramp;
-  work_.add(grid_, displacement, gravity, extra_mass(), loading.damping > 0);
+  work_.add(grid_, displacement, loading.gravity_at(loading.set_at), extra_mass(), loading.damping > 0);
   moved_ = 0, speed_squared_ = 0;
   for (int i = 0; i < grid_.node_count(); ++i) {
     const Vec<dim> &x = grid_.position[i], &X = mesh_.position[grid_.mesh_node[i]];

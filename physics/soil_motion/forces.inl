@@ -77,7 +77,7 @@ template <int dim, class Phases>
 PetscErrorCode SoilMotion<dim, Phases>::total_force(double t, const State &state) {
   PetscFunctionBeginUser;
   const int nodes = grid_.node_count();
-  const double load_time = loading.time_at(t), ramp = loading.ramp_at(t);
+  const double load_time = loading.time_at(t);
   internal_force(state);
   conditions_.surface_loads().add(load_time, grid_, state.position, force_.data());
   if (work_.imposes()) {
@@ -85,16 +85,17 @@ PetscErrorCode SoilMotion<dim, Phases>::total_force(double t, const State &state
     add_body_forces(load_time);
     if constexpr (Phases::prescribed) {
       if (!is_trial(state)) PetscCall(water_.advance_to(load_time, grid_, blend_.data()));
-      water_.add_force(grid_, state, load_time, ramp, force_.data());
+      water_.add_force(grid_, state, load_time, loading.ramp_at(t), force_.data());
     }
     work_.after_imposed(force_.data(), nodes);
   }
   PetscCall(grid_.sum(force_[0].data(), dim));
   conditions_.add_reactions(force_.data());
   const double *extra = extra_mass();
+  const Vec<dim> gravity = loading.gravity_at(t);
   for (int i = 0; i < nodes; ++i) {
     const double m = grid_.mass[i] + (extra ? extra[i] : 0);
-    for (int d = 0; d < dim; ++d) force_[i][d] += m * (ramp * loading.gravity[d]);
+    for (int d = 0; d < dim; ++d) force_[i][d] += m * gravity[d];
   }
   if constexpr (Phases::liquid) fluid_.add_to_mixture(pore_frame(t, state), pore_conditions_, force_.data());
   PetscFunctionReturn(0);

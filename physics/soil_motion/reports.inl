@@ -36,8 +36,6 @@ bool SoilMotion<dim, Phases>::find_trouble(Vec<dim> *where, std::string *cause) 
 template <int dim, class Phases>
 typename PoreFluid<dim, Phases>::Frame SoilMotion<dim, Phases>::pore_frame(double t,
                                                                            const State &state) requires Phases::liquid {
-  Vec<dim> gravity = loading.gravity;
-  for (double &g : gravity) g *= loading.ramp_at(t);
   return {.grid = grid_,
           .shape = state.shape,
           .position = state.position,
@@ -46,7 +44,7 @@ typename PoreFluid<dim, Phases>::Frame SoilMotion<dim, Phases>::pore_frame(doubl
           .volume = state.volume.data(),
           .particle_volume = state.particle_volume.data(),
           .blend = blend_.data(),
-          .gravity = gravity,
+          .gravity = loading.gravity_at(t),
           .time = loading.time_at(t),
           .averaged = transfer_.average_stress,
           .trial = is_trial(state)};
@@ -259,9 +257,10 @@ PetscErrorCode SoilMotion<dim, Phases>::balance(double t, Balance *sums) {
   add_body_forces(loading.time);
   PetscCall(grid_.sum(force_[0].data(), dim));
   conditions_.add_reactions(force_.data());
+  const Vec<dim> gravity = loading.gravity_at(loading.set_at);
   for (int i = 0; i < grid_.node_count(); ++i) {
     if (!mesh_.owned[grid_.mesh_node[i]]) continue;
-    for (int d = 0; d < dim; ++d) force_[i][d] += grid_.mass[i] * (loading.ramp * loading.gravity[d]);
+    for (int d = 0; d < dim; ++d) force_[i][d] += grid_.mass[i] * gravity[d];
     local[1] += magnitude(force_[i]);
   }
   // of the particles: nodes also carry modes that no particle feels

@@ -393,6 +393,7 @@ struct Stage {
   std::string failure_point;    ///< failure: named output point that is watched
   double failure_speed = 0.01;  ///< failure: its mean speed passes this [m/s] ...
   double failure_time = 1;      ///< ... over this time [s]
+  bool earthquake = false;      ///< the base moves as [[earthquake]] says, from the begin of the stage
   bool pore_flow = true;        ///< pore fluids move; false: pore pressures are those of [water], as in a drained scene
   bool softening = true;        ///< soil remembers plastic strain; false: it keeps the strength it has
   bool hold_loads = false;      ///< functions of time stand still: their t counts only stages that do not hold loads
@@ -441,6 +442,9 @@ struct Stage {
              "rest: the root mean square speed of all soil remains below this value and does not rise; a stage "
              "does not end while what acts has still to change within its duration, or pore fluids move, unless "
              "hold_loads = true");
+    v.flag("earthquake", earthquake,
+           "the base moves as [[earthquake]] says, from the begin of the stage on; displacements and velocities are those "
+           "relative to it");
     v.text("failure_point", failure_point, "failure: name of the output point whose velocity is tested");
     v.number("failure_speed", failure_speed, metre_per_second, Range{0, 1e6, {1e-4, 1}},
              "failure: speed that the mean velocity of the point over failure_time must exceed");

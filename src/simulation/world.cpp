@@ -68,6 +68,8 @@ void World<dim>::set_loading(const Stage &stage, double stage_time, const Clock 
   motion->loading.time_rate = stage.hold_loads ? 0 : 1;
   motion->loading.time = clock.load_time;
   motion->loading.damping = stage.damping;
+  motion->loading.shaking = stage.earthquake ? &shaking : nullptr;
+  motion->loading.shaken_since = clock.time - stage_time;
   motion->loading.softening = stage.softening;
   conditions.bases().remember_slip(stage.softening);
   motion->loading.pore_flow = stage.pore_flow;

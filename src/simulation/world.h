@@ -99,6 +99,7 @@ class World {
   std::array<std::array<double, 3>, 2> mesh_box{};  ///< corners of the box around it, of all ranks [m]
   MPI_Comm comm;
   PrescribedPressure<dim> pressure;  ///< of drained scenes
+  const GroundShaking shaking;       ///< of stages in which the base moves
   std::vector<std::unique_ptr<Body<dim>>> bodies;
   std::vector<char> present;  ///< bodies that are there now
   Conditions<dim> conditions;

@@ -20,6 +20,7 @@ class LoadsToCome {
     const Stage &stage = run.stage();
     const double since_begin = run.clock.time - run.progress.begin;
     if (since_begin < stage.gravity_ramp) return "gravity still increases";
+    if (stage.earthquake && since_begin < run.world.shaking.duration()) return "the ground still shakes";
     if (stage.hold_loads) return "";
     if (!known_) loads_ = changing_loads(run.scene), known_ = true;
     const double now = run.clock.load_time, end = now + stage.duration - since_begin;
