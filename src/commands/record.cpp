@@ -28,14 +28,9 @@ std::vector<EarthquakeSource> components_of(const RecordArguments &arguments) {
     if (scene.earthquake.empty()) scene.complain("earthquake", "is missing: the scene has no [[earthquake]]");
     return scene.earthquake;
   }
-  struct {
-    std::vector<EarthquakeSource> earthquake;
-    void fields(TableReader &v) { v.list("earthquake", earthquake, "components of the motion"); }
-  } root;
   std::vector<std::string> keys{"earthquake.0.file=" + std::filesystem::absolute(arguments.file).string()};
   for (const std::string &key : arguments.set) keys.push_back("earthquake.0." + key);
-  TableReader::from_text("[[earthquake]]\nkind = \"record\"\n", "--set", keys).fill(root);
-  return root.earthquake;
+  return read_components("[[earthquake]]\nkind = \"record\"\n", keys);
 }
 
 void write(const std::string &path, const std::string &text) {

@@ -26,6 +26,15 @@ GroundMotion read_motion(const EarthquakeSource &source) {
   return motion;
 }
 
+std::vector<EarthquakeSource> read_components(const std::string &text, const std::vector<std::string> &overrides) {
+  struct {
+    std::vector<EarthquakeSource> earthquake;
+    void fields(TableReader &v) { v.list("earthquake", earthquake, "components of the motion of the ground"); }
+  } root;
+  TableReader::from_text(text, "--set", overrides).fill(root);
+  return root.earthquake;
+}
+
 std::string drift_of(const GroundMotion &motion) {
   constexpr double small = 0.1;  // of the largest velocity
   const std::vector<double> v = motion.velocity();

@@ -19,6 +19,9 @@ using MotionSource = std::variant<RecordSource, RickerSource, GaborSource, SineS
 /// Throws SceneError for a record that cannot be read or used.
 GroundMotion read_motion(const EarthquakeSource &source);
 
+/// The components of a text that has no more than [[earthquake]], with overrides. Throws SceneError.
+std::vector<EarthquakeSource> read_components(const std::string &text, const std::vector<std::string> &overrides = {});
+
 /// A sentence on a motion that leaves the ground with a velocity, as wrong baselines do; empty where it does not.
 std::string drift_of(const GroundMotion &motion);
 
