@@ -26,8 +26,10 @@ namespace talus {
 template <int dim>
 struct Loading {
   Vec<dim> gravity{};     ///< once the ramp of the stage is over [m/s2]
-  const GroundShaking *shaking = nullptr;  ///< of the base, in whose frame the soil is computed; null: it is at rest
+  const GroundShaking *shaking = nullptr;  ///< of the ground; null: it is at rest
   double shaken_since = 0;                 ///< time of the run at which the motion begins [s]
+  bool in_frame_of_base = false;           ///< the soil is computed in the frame of the base, which shakes whole; else
+                                           ///< the motion comes in as a wave
   double ramp = 1;        ///< of the stage: gravity and with it pore pressure grow from 0 to 1
   double time = 0;        ///< load time: the t of the scene's functions [s]
   double set_at = 0;      ///< time of the run at which ramp and load time have these values [s], and their rates:
@@ -41,10 +43,18 @@ struct Loading {
   Vec<dim> gravity_at(double t) const {
     Vec<dim> total = gravity;
     for (double &g : total) g *= ramp_at(t);
-    if (!shaking) return total;
+    if (!shaking || !in_frame_of_base) return total;
     const std::array<double, 3> base = shaking->acceleration(t - shaken_since);
     for (int d = 0; d < dim; ++d) total[d] -= base[d];
     return total;
+  }
+  /// Of an outcrop of the rock from which the wave comes in [m/s].
+  Vec<dim> ground_velocity_at(double t) const {
+    Vec<dim> velocity{};
+    if (!shaking || in_frame_of_base) return velocity;
+    const std::array<double, 3> ground = shaking->velocity(t - shaken_since);
+    std::copy_n(ground.begin(), dim, velocity.begin());
+    return velocity;
   }
   double ramp_at(double t) const { return std::min(1., ramp + ramp_rate * (t - set_at)); }
   double time_at(double t) const { return time + time_rate * (t - set_at); }

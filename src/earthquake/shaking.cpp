@@ -11,7 +11,9 @@ GroundShaking::GroundShaking(const std::vector<EarthquakeSource> &components) {
     for (std::size_t d = 0; d < source.direction.size(); ++d) size += source.direction[d] * source.direction[d];
     for (std::size_t d = 0; d < source.direction.size(); ++d) direction[d] = source.direction[d] / std::sqrt(size);
     if (source.direction.empty()) direction[0] = 1;
-    components_.push_back({direction, read_motion(source)});
+    GroundMotion motion = read_motion(source);
+    std::vector<double> velocity = motion.velocity();
+    components_.push_back({direction, std::move(motion), std::move(velocity)});
   }
 }
 
@@ -19,6 +21,18 @@ double GroundShaking::duration() const {
   double longest = 0;
   for (const Component &one : components_) longest = std::max(longest, one.motion.duration());
   return longest;
+}
+
+std::array<double, 3> GroundShaking::velocity(double t) const {
+  std::array<double, 3> sum{};
+  for (const auto &[direction, motion, at_values] : components_) {
+    if (t <= 0) continue;
+    const auto k = std::min(static_cast<std::size_t>(t / motion.step), at_values.size() - 1);
+    const double since = t - static_cast<double>(k) * motion.step;
+    const double v = at_values[k] + since * (motion.acceleration[k] + motion.at(t)) / 2;
+    for (int d = 0; d < 3; ++d) sum[d] += (k + 1 < at_values.size() ? v : at_values[k]) * direction[d];
+  }
+  return sum;
 }
 
 std::array<double, 3> GroundShaking::acceleration(double t) const {

@@ -20,9 +20,13 @@ class GroundShaking {
   /// Acceleration at a time after its begin [m/s2].
   std::array<double, 3> acceleration(double t) const;
 
+  /// Velocity at that time; after the end that of the end [m/s].
+  std::array<double, 3> velocity(double t) const;
+
   struct Component {
     std::array<double, 3> direction;  ///< unit vector
     GroundMotion motion;
+    std::vector<double> velocity;  ///< at the values of the motion [m/s]
   };
   const std::vector<Component> &components() const { return components_; }
 
