@@ -17,10 +17,11 @@
 #include "physics/pores/pore_report.h"
 #include "physics/prescribed_pressure.h"
 #include "physics/soil_motion/work_ledger.h"
-#include "scene/scene.h"
 #include "transfer/transfer.h"
 
 namespace talus {
+
+struct Scene;
 
 /// Loading of the soil, set by the time loop before each step and read by the motion.
 template <int dim>

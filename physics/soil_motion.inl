@@ -20,7 +20,7 @@ SoilMotion<dim, Phases>::SoilMotion(const MotionParts<dim> &parts)
     : mesh_(parts.mesh),
       bodies_(parts.bodies),
       conditions_(parts.conditions),
-      transfer_(parts.scene.transfer),
+      transfer_(*parts.scene.transfer),
       total_mass_(parts.total_mass),
       smallest_mass_(1e-12 * parts.total_mass / static_cast<double>(parts.particles)),
       grid_(parts.mesh),
@@ -28,8 +28,8 @@ SoilMotion<dim, Phases>::SoilMotion(const MotionParts<dim> &parts)
       points_(parts.bodies.size()),
       next_points_(parts.bodies.size()),
       accepted_(parts.mesh.cell_count(), parts.bodies.size()),
-      velocities_(parts.mesh.node_count(), parts.relaxation_time, parts.scene.transfer.remap_interval > 0,
-                  parts.scene.transfer.velocity == Velocity::flip ? 1 - parts.scene.transfer.pic_fraction : 0),
+      velocities_(parts.mesh.node_count(), parts.relaxation_time, parts.scene.transfer->remap_interval > 0,
+                  parts.scene.transfer->velocity == Velocity::flip ? 1 - parts.scene.transfer->pic_fraction : 0),
       water_(parts.mesh, parts.bodies, parts.pressure),
       work_(parts.mesh.node_count(),
             Phases::prescribed ||
@@ -77,3 +77,6 @@ SoilMotion<dim, Phases>::SoilMotion(const MotionParts<dim> &parts)
 #include "physics/soil_motion/remap.inl"
 #include "physics/soil_motion/reports.inl"
 #include "physics/soil_motion/velocities.inl"
+#include "scene/body_source.h"
+#include "scene/scene.h"
+#include "scene/transfer_source.h"

@@ -22,8 +22,10 @@
 #include <stdexcept>
 #include <thread>
 
+#include "scene/mesh_source.h"
 #include "scene/place_grid.h"
 #include "scene/reader.h"
+#include "scene/scene.h"
 
 extern char **environ;
 
@@ -47,7 +49,7 @@ std::string talus_mesh_path() {
 
 /// What talus-mesh is asked for.
 std::vector<std::string> options_of_section(const Scene &scene) {
-  const MeshSource &source = scene.mesh;
+  const MeshSource &source = *scene.mesh;
   std::vector<std::string> arguments{"--size", number(source.size), "--dimension", std::to_string(scene.dimension)};
   if (scene.dimension == 3) {
     arguments.insert(arguments.end(), {"--layers", std::to_string(source.layers)});
@@ -61,9 +63,9 @@ std::vector<std::string> options_of_section(const Scene &scene) {
 }
 
 std::vector<std::string> of_terrain(const Scene &scene, const std::string &file) {
-  const TerrainSource &t = scene.mesh.terrain;
+  const TerrainSource &t = scene.mesh->terrain;
   std::vector<std::string> arguments{
-      t.file, "-o", file, "--size", number(scene.mesh.size), "--step", std::to_string(t.step)};
+      t.file, "-o", file, "--size", number(scene.mesh->size), "--step", std::to_string(t.step)};
   const auto add = [&](const char *option, const std::vector<double> &values) {
     arguments.push_back(option);
     for (const double value : values) arguments.push_back(number(value));
@@ -72,7 +74,7 @@ std::vector<std::string> of_terrain(const Scene &scene, const std::string &file)
   if (!t.base.empty()) add("--base", t.base);
   if (t.air > 0) add("--air", {t.air});
   if (t.far_size > 0) add("--far-size", {t.far_size});
-  if (scene.mesh.halvings > 0) arguments.insert(arguments.end(), {"--halvings", std::to_string(scene.mesh.halvings)});
+  if (scene.mesh->halvings > 0) arguments.insert(arguments.end(), {"--halvings", std::to_string(scene.mesh->halvings)});
   if (!t.slip_surface.empty()) arguments.insert(arguments.end(), {"--slip-surface", t.slip_surface});
   if (!t.outline.empty()) arguments.insert(arguments.end(), {"--outline", t.outline});
   if (t.depth > 0) add("--depth", {t.depth});
@@ -257,7 +259,7 @@ MeshRun run_talus_mesh(const std::vector<std::string> &arguments) {
 }
 
 MeshFile::MeshFile(MPI_Comm comm, const Scene &scene) {
-  const MeshSource &source = scene.mesh;
+  const MeshSource &source = *scene.mesh;
   int rank;
   MPI_Comm_rank(comm, &rank);
   if (!source.file.empty()) {
@@ -303,7 +305,7 @@ void MeshFile::read_origin(const std::string &name) {
 }
 
 MeshRun MeshFile::make(const Scene &scene) {
-  const MeshSource &source = scene.mesh;
+  const MeshSource &source = *scene.mesh;
   if (!folder_.make()) return no_folder;
   path_ = folder_.path() + "/mesh.msh";
   std::vector<std::string> arguments;

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "base/temporary_folder.h"
-#include "scene/scene.h"
 #include "simulation.h"
 
 namespace talus {

@@ -15,10 +15,11 @@
 #include "output/events.h"
 #include "output/results.h"
 #include "physics/laws/strength_range.h"
-#include "scene/scene.h"
 #include "solvers/quasi_static/factor_of_safety.h"
 
 namespace talus {
+
+struct Scene;
 
 /// The run cannot go on: the program ends with status 1 and this text; what was written before stays.
 class RunError : public std::runtime_error {

@@ -10,7 +10,6 @@
 
 #include "physics/laws/laws.h"
 #include "scene/function.h"
-#include "scene/scene.h"
 
 namespace talus {
 

@@ -2,10 +2,11 @@
 #include <algorithm>
 #include <string>
 
+#include "base/units.h"
 #include "physics/laws/lanes.h"
 #include "physics/laws/stress.h"
 #include "scene/quantity.h"
-#include "scene/scene.h"
+#include "scene/required.h"
 
 namespace talus {
 

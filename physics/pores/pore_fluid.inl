@@ -12,14 +12,14 @@ PoreFluid<dim, Phases>::PoreFluid(const BackgroundMesh<dim> &mesh, std::vector<s
     : mesh_(mesh),
       bodies_(bodies),
       scene_(scene),
-      liquid_(scene.water),
-      gas_(scene.gas),
+      liquid_(*scene.water),
+      gas_(*scene.gas),
       pressure_(scene),
-      bishop_(scene.water.stress == PoreStress::bishop),
-      smoothing_(scene.transfer.pore_smoothing == PoreSmoothing::nodal),
-      patches_(scene.transfer.locking == Locking::patches),
-      explicit_drag_(scene.water.drag == PoreDrag::at_start),
-      by_rate_(scene.water.storage == PoreStorage::rate),
+      bishop_(scene.water->stress == PoreStress::bishop),
+      smoothing_(scene.transfer->pore_smoothing == PoreSmoothing::nodal),
+      patches_(scene.transfer->locking == Locking::patches),
+      explicit_drag_(scene.water->drag == PoreDrag::at_start),
+      by_rate_(scene.water->storage == PoreStorage::rate),
       points_(bodies.size()),
       next_points_(bodies.size()),
       trial_(bodies.size()) {
@@ -27,7 +27,7 @@ PoreFluid<dim, Phases>::PoreFluid(const BackgroundMesh<dim> &mesh, std::vector<s
   const double gravity = scene.gravity_size();
   constexpr double earth = 9.81;  // [m/s2], for a hydraulic conductivity in a scene without gravity
   for (const auto &body : bodies)
-    soils_.emplace_back(body->source(), scene.water.density * (gravity > 0 ? gravity : earth), scene.water.viscosity);
+    soils_.emplace_back(body->source(), scene.water->density * (gravity > 0 ? gravity : earth), scene.water->viscosity);
   make_room(cells_, cells), make_room(nodes_, nodes), make_room(mean_, cells), make_room(reference_, cells);
   make_room(rows_, cells), make_room(head_, cells), make_room(grain_mass_, cells), make_room(nodal_head_, nodes);
   for (auto *field : {&surface_, &moment_, &gap_}) make_room(*field, nodes);
@@ -41,7 +41,7 @@ PoreFluid<dim, Phases>::PoreFluid(const BackgroundMesh<dim> &mesh, std::vector<s
   if constexpr (Phases::gas) make_room(uptake_, cells);
   for (auto *all : {&points_, &next_points_})
     for (size_t b = 0; b < bodies.size(); ++b)
-      (*all)[b].reserve(scene.transfer.average_stress ? static_cast<int>(cells) : bodies[b]->particles().count);
+      (*all)[b].reserve(scene.transfer->average_stress ? static_cast<int>(cells) : bodies[b]->particles().count);
 }
 
 // ---- first state ----
@@ -51,14 +51,14 @@ double PoreFluid<dim, Phases>::prescribed_pressure(const Vec<dim> &x, double t) 
   double p = pressure_(x, t, common_water);
   if constexpr (Phases::suction)
     if (!pressure_.below_table(x, t, common_water))
-      p -= scene_.water.suction.given() ? scene_.water.suction(x[0], x[1], dim == 3 ? x[dim - 1] : 0, t)
+      p -= scene_.water->suction.given() ? scene_.water->suction(x[0], x[1], dim == 3 ? x[dim - 1] : 0, t)
                                         : pressure_.above_table(x, t);
   return p;
 }
 
 template <int dim, class Phases>
 double PoreFluid<dim, Phases>::prescribed_gas_pressure(const Vec<dim> &x) const {
-  if constexpr (Phases::gas) return scene_.gas.pressure(x[0], x[1], dim == 3 ? x[dim - 1] : 0, 0);
+  if constexpr (Phases::gas) return scene_.gas->pressure(x[0], x[1], dim == 3 ? x[dim - 1] : 0, 0);
   return 0;
 }
 
@@ -159,3 +159,7 @@ PetscErrorCode PoreFluid<dim, Phases>::ledger(bool gathered, FluidLedger *sums) 
 #include "physics/pores/pore_fluid/forces.inl"
 #include "physics/pores/pore_fluid/pressures.inl"
 #include "physics/pores/pore_fluid/remap.inl"
+#include "scene/body_source.h"
+#include "scene/scene.h"
+#include "scene/transfer_source.h"
+#include "scene/water_source.h"

@@ -5,6 +5,7 @@
 
 #include "physics/soil_motion.h"
 #include "physics/soil_motion/cell_deformation.h"
+#include "scene/transfer_source.h"
 
 namespace talus {
 

@@ -3,6 +3,8 @@
 #include <cmath>
 
 #include "physics/soil_motion.h"
+#include "scene/body_source.h"
+#include "scene/transfer_source.h"
 
 namespace talus {
 

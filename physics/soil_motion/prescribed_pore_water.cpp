@@ -6,6 +6,7 @@
 #include "base/room.h"
 #include "meshes/locate.h"
 #include "physics/laws/laws.h"
+#include "scene/body_source.h"
 
 namespace talus {
 

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "physics/soil_motion.h"
+#include "scene/transfer_source.h"
 
 namespace talus {
 

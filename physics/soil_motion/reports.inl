@@ -5,6 +5,8 @@
 
 #include "base/local_numbers.h"
 #include "physics/soil_motion.h"
+#include "scene/body_source.h"
+#include "scene/transfer_source.h"
 
 namespace talus {
 

@@ -2,6 +2,10 @@
 
 #include <algorithm>
 
+#include "scene/body_source.h"
+#include "scene/scene.h"
+#include "scene/stage.h"
+
 namespace talus {
 
 template <int dim>

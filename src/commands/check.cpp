@@ -13,7 +13,10 @@
 #include "doubts/needs.h"
 #include "doubts/scales.h"
 #include "output/pictures.h"
+#include "scene/mesh_source.h"
 #include "scene/reader.h"
+#include "scene/scene.h"
+#include "scene/stage.h"
 
 namespace talus {
 namespace {
@@ -103,7 +106,7 @@ std::string source_of(const MeshSource &mesh) {
 
 void print_costs(const Scene &scene, const Needs &n) {
   const char *per = scene.dimension == 2 ? "kg/m" : "kg";
-  line("mesh", "%lld cells, %lld nodes: %s", n.mesh.cells, n.mesh.nodes, source_of(scene.mesh).c_str());
+  line("mesh", "%lld cells, %lld nodes: %s", n.mesh.cells, n.mesh.nodes, source_of(*scene.mesh).c_str());
   line("", "quality %.2f at least, %.2f on average; smallest altitude %.3g m", n.mesh.smallest_quality,
        n.mesh.mean_quality, n.mesh.smallest_altitude);
   line("bodies", "%-16s %-14s %10s %8s %5s %10s %8s %8s %12s", "", "law", "particles", "cells", "each", per, "c_p m/s",

@@ -1,7 +1,9 @@
 #include "commands/foreign_code.h"
 
 #include "physics/laws/laws.h"
+#include "scene/body_source.h"
 #include "scene/reader.h"
+#include "scene/scene.h"
 
 namespace talus {
 

@@ -11,6 +11,8 @@
 #include "doubts/doubts.h"
 #include "output/pictures.h"
 #include "scene/reader.h"
+#include "scene/scene.h"
+#include "scene/stage.h"
 #include "simulation.h"
 
 namespace talus {

@@ -8,8 +8,15 @@
 #include "particles/body.h"
 #include "physics/boundary/boundary.h"
 #include "physics/pores/hyperbolicity.h"
+#include "scene/body_source.h"
+#include "scene/boundary_source.h"
+#include "scene/mesh_source.h"
 #include "scene/reader.h"
+#include "scene/scene.h"
+#include "scene/stage.h"
 #include "scene/stress_at_rest.h"
+#include "scene/transfer_source.h"
+#include "scene/water_source.h"
 
 namespace talus {
 namespace {
@@ -122,7 +129,7 @@ class Adviser {
 
   void locking(const BodyNeeds &b) {
     const double K = bulk_modulus(b.law), G = shear_modulus(b.law), nu = (3 * K - 2 * G) / (2 * (3 * K + G));
-    if (nu > 0.45 && scene_.transfer.locking == Locking::none)
+    if (nu > 0.45 && scene_.transfer->locking == Locking::none)
       say("Poisson's ratio " + digits(nu) + " in " + b.body.name +
           " makes linear cells lock (the load of a footing was 45 % too high at 0.49) without transfer.locking.");
   }
@@ -257,8 +264,8 @@ class Adviser {
     if (b.critical_step > 0.4 * b.mean_critical_step) return;
     std::string at = std::string("(") + digits(b.slowest_cell[0]) + ", " + digits(b.slowest_cell[1]) +
                      (scene_.dimension == 3 ? ", " + digits(b.slowest_cell[2]) : "") + ") m";
-    for (std::size_t i = 0; i < scene_.mesh.refine.size(); ++i)
-      if (inside(scene_.mesh.refine[i], b.slowest_cell)) at += ", in mesh.refine." + std::to_string(i) + ",";
+    for (std::size_t i = 0; i < scene_.mesh->refine.size(); ++i)
+      if (inside(scene_.mesh->refine[i], b.slowest_cell)) at += ", in mesh.refine." + std::to_string(i) + ",";
     say("Small cells at " + at + " determine the step: it is " + digits(b.critical_step / b.mean_critical_step, 2) +
         " of the mean critical step of the cells of " + b.name + ".");
   }
@@ -270,7 +277,7 @@ class Adviser {
   }
 
   void transfer() {
-    const Transfer &t = scene_.transfer;
+    const Transfer &t = *scene_.transfer;
     if (t.remap_interval == 0)
       say("A remap in every step costs twice the time or more and adds cell-crossing noise; transfer.remap_interval "
           "= " +
@@ -320,15 +327,15 @@ class Adviser {
   }
 
   SoilPores pores_of(std::size_t b) const {
-    return {scene_.body[b], scene_.water.density * (needs_.gravity > 0 ? needs_.gravity : 9.81),
-            scene_.water.viscosity};
+    return {scene_.body[b], scene_.water->density * (needs_.gravity > 0 ? needs_.gravity : 9.81),
+            scene_.water->viscosity};
   }
 
   /// Gas that drag hardly holds: its waves between cells lose less of their speed than they gain at a wetting front.
   void gas_without_drag() {
     constexpr double held = 0.2;  // share of the angular frequency of a wave of two cells; 0.25 held, 0.1 did not
     if (scene_.phases != PhaseModel::three_phase) return;
-    const PoreGas gas(scene_.gas);
+    const PoreGas gas(*scene_.gas);
     for (std::size_t b = 0; b < scene_.body.size(); ++b) {
       if (!needs_.bodies[b].there()) continue;
       const SoilPores soil = pores_of(b);
@@ -344,14 +351,14 @@ class Adviser {
 
   /// Gas shares at which waves of some body grow without bound.
   void suction() {
-    const bool gas_moves = scene_.phases == PhaseModel::three_phase, bishop = scene_.water.stress == PoreStress::bishop;
+    const bool gas_moves = scene_.phases == PhaseModel::three_phase, bishop = scene_.water->stress == PoreStress::bishop;
     if (scene_.phases != PhaseModel::unsaturated && !gas_moves) return;
-    const Liquid liquid(scene_.water);
+    const Liquid liquid(*scene_.water);
     for (std::size_t b = 0; b < scene_.body.size(); ++b) {
       const SoilPores soil = pores_of(b);
       double first = 0, last = 0;
       for (double share = 2 * residual_gas; share < 0.99 * soil.largest_gas_share(); share *= 1.05) {
-        if (hyperbolic(soil, liquid, PoreGas(scene_.gas), constrained_modulus(needs_.bodies[b].law),
+        if (hyperbolic(soil, liquid, PoreGas(*scene_.gas), constrained_modulus(needs_.bodies[b].law),
                        scene_.body[b].grain_density, share, gas_moves, bishop))
           continue;
         if (first == 0) first = share;

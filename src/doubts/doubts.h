@@ -14,6 +14,7 @@
 #include "scene/doubt.h"
 #include "scene/doubt_names.h"
 #include "scene/scene.h"
+#include "scene/stage.h"
 #include "simulation.h"
 
 namespace talus {

@@ -5,6 +5,9 @@
 
 #include "base/rounded.h"
 #include "doubts/doubts.h"
+#include "scene/mesh_source.h"
+#include "scene/scene.h"
+#include "scene/stage.h"
 
 namespace talus {
 namespace {
@@ -16,7 +19,7 @@ void doubt_sides(const Start &start, Doubts &doubts) {
   const Scene &scene = start.scene;
   const auto matters = [&](const Stage &stage) {
     return stage.kind == StageKind::dynamic
-               ? stage.until == StopWhen::equilibrium || scene.mesh.leaving_particles == WhenOutside::stop
+               ? stage.until == StopWhen::equilibrium || scene.mesh->leaving_particles == WhenOutside::stop
                : stage.kind != StageKind::seepage;
   };
   if (std::ranges::none_of(scene.stage, matters)) return;

@@ -3,6 +3,10 @@
 
 #include "base/rounded.h"
 #include "doubts/doubts.h"
+#include "scene/body_source.h"
+#include "scene/scene.h"
+#include "scene/stage.h"
+#include "scene/water_source.h"
 #include "simulation/changing_loads.h"
 
 namespace talus {
@@ -41,7 +45,7 @@ void doubt_stages(const Scene &scene, Doubts &doubts) {
       doubts.say("relative_permeability", "body." + body.name +
                                               " has a retention curve and no relative_permeability: it conducts "
                                               "water as if its pores were full");
-  if (scene.phases == PhaseModel::drained && scene.water.suction.given() && has_seepage(scene) &&
+  if (scene.phases == PhaseModel::drained && scene.water->suction.given() && has_seepage(scene) &&
       scene.stage.front().kind != StageKind::seepage)
     doubts.say("early_suction", "water.suction acts from the first stage of seepage on: the soil of stage." +
                                     scene.stage.front().name +

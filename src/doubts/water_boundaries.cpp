@@ -5,6 +5,11 @@
 #include "doubts/doubts.h"
 #include "physics/boundary/boundary.h"
 #include "physics/phase_models.h"
+#include "scene/body_source.h"
+#include "scene/boundary_source.h"
+#include "scene/scene.h"
+#include "scene/stage.h"
+#include "scene/water_source.h"
 
 namespace talus {
 namespace {
@@ -32,7 +37,7 @@ void doubt_supply(const Start &start, const Watered &one, double end, Doubts &do
     upward = std::max(upward, facing);
     for (int a = 0; a < scene.dimension && one.kind.open_water; ++a) {
       const auto &[x, y, z] = face->corner[a];
-      pressure = std::max(pressure, one.kind.outside(x, y, z, 0, {scene.water.density * g, face->corner[a][up]}));
+      pressure = std::max(pressure, one.kind.outside(x, y, z, 0, {scene.water->density * g, face->corner[a][up]}));
     }
   }
   const bool seeps = one.kind.water == OnWater::seepage;
@@ -120,7 +125,7 @@ void doubt_water_boundaries(const Start &start, Doubts &doubts) {
     doubt_supply(start, one, end, doubts);
     if (moves) doubt_faces_left(scene, one, doubts), doubt_open_water_without_flow(start, one, doubts);
     // pressure rises under ground that lets no water out, where none stands that would bear against it
-    if (drained && scene.water.open_water_load && has_seepage(scene) && one.anywhere && one.kind.water == OnWater::wall)
+    if (drained && scene.water->open_water_load && has_seepage(scene) && one.anywhere && one.kind.water == OnWater::wall)
       doubts.say(
           "sealed_ground",
           one.name() +

@@ -8,6 +8,7 @@
 #include "output/hdf5_file.h"
 #include "output/replace_file.h"
 #include "physics/laws/strength_by_place.h"
+#include "scene/body_source.h"
 #include "scene/reader.h"
 
 namespace talus {

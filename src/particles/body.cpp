@@ -6,6 +6,7 @@
 
 #include "base/local_numbers.h"
 #include "meshes/exchange.h"
+#include "scene/body_source.h"
 
 namespace talus {
 namespace {
@@ -248,6 +249,19 @@ PetscErrorCode Body<dim>::serialize(Archive &archive, const BackgroundMesh<dim> 
   }
   PetscCall(borrow());
   PetscFunctionReturn(0);
+}
+
+template <int dim>
+const std::string &Body<dim>::name() const {
+  return source_->name;
+}
+template <int dim>
+double Body<dim>::grain_density() const {
+  return source_->grain_density;
+}
+template <int dim>
+double Body<dim>::averaging_length() const {
+  return source_->averaging_length;
 }
 
 template class Body<2>;

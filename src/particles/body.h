@@ -14,9 +14,11 @@
 #include "meshes/background_mesh.h"
 #include "physics/laws/laws.h"
 #include "physics/laws/stress.h"
-#include "scene/scene.h"
+#include "scene/function.h"
 
 namespace talus {
+
+struct BodySource;
 
 /// The piece of a loaded face that a particle carries (physics/boundary/surface_loads.h).
 template <int dim>
@@ -62,7 +64,9 @@ class Body {
   PetscErrorCode resize(PetscInt count);
 
   const BodySource &source() const { return *source_; }
-  const std::string &name() const { return source_->name; }
+  const std::string &name() const;
+  double grain_density() const;     ///< [kg/m3]
+  double averaging_length() const;  ///< of plastic strain [m]; 0: none
   const Law &law() const { return law_; }
   int history_count() const { return history_count_; }
   /// The volume closest to `volume` that a point of this rest volume may have [m3], theory (3.9): at most the cap times
@@ -123,9 +127,7 @@ class Body {
 
 /// Particles in a cell of the body where no box asks for others.
 template <int dim>
-int particles_per_cell(const BodySource &source) {
-  return source.particles_per_cell > 0 ? source.particles_per_cell : dim == 2 ? 3 : 4;
-}
+int particles_per_cell(const BodySource &source);
 
 /// Fills `body` with particles on barycentric lattices in the cells of its regions: equal volumes that add up to the
 /// cell's, mass from density, initial velocity, displacement and stress from the scene. `mass_density(x)` is the total

@@ -2,14 +2,13 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <numeric>
 #include <sstream>
 #include <tuple>
 
 #include "scene/doubt_names.h"
 #include "scene/quantity.h"
 #include "scene/reader.h"
-#include "scene/scene.h"
+#include "scene/tables.h"
 #include "scene/words.h"
 
 namespace talus {
@@ -31,11 +30,11 @@ class Checks {
     for (BoundarySource &boundary : scene_.boundary)
       if (boundary.group.empty()) boundary.group = {boundary.name};
     water();
-    for (OutputPoint &point : scene_.output.point) {
+    for (OutputPoint &point : scene_.output->point) {
       into_middle(point.position);
       components("output.point." + point.name + ".position", point.position.size(), scene_.dimension, "coordinates");
     }
-    for (OutputLine &line : scene_.output.line) {
+    for (OutputLine &line : scene_.output->line) {
       for (std::vector<double> &point : line.points) into_middle(point);
       followed_line(line);
     }
@@ -45,7 +44,7 @@ class Checks {
     }
     bodies_that_come_and_go();
     factor_of_safety();
-    if (scene_.start_from.reset_displacement && scene_.start_from.folder.empty())
+    if (scene_.start_from->reset_displacement && scene_.start_from->folder.empty())
       reader_.complain(
           "start_from.reset_displacement",
           "has no effect without start_from.folder, the results of the run at whose state this one starts");
@@ -59,7 +58,7 @@ class Checks {
  private:
   /// A point of the section lies in the middle of the body that is drawn out of it.
   void into_middle(std::vector<double> &point) const {
-    const MeshSource &mesh = scene_.mesh;
+    const MeshSource &mesh = *scene_.mesh;
     if (scene_.dimension == 3 && !mesh.section.empty() && point.size() == 2)
       point.push_back((mesh.thickness > 0 ? mesh.thickness : mesh.size) / 2);
   }
@@ -87,7 +86,7 @@ class Checks {
   }
 
   void mesh() const {
-    const MeshSource &mesh = scene_.mesh;
+    const MeshSource &mesh = *scene_.mesh;
     if (host_mesh_) {
       if (!mesh.file.empty() || !mesh.section.empty() || !mesh.terrain.file.empty())
         reader_.complain("mesh",
@@ -120,7 +119,7 @@ class Checks {
   }
 
   void terrain() const {
-    const MeshSource &mesh = scene_.mesh;
+    const MeshSource &mesh = *scene_.mesh;
     const TerrainSource &t = mesh.terrain;
     if (scene_.up != Up::z)
       reader_.complain("mesh.terrain.file", "counts elevations along z: set dimension = 3 and up = \"z\"");
@@ -179,14 +178,14 @@ class Checks {
     }
   }
 
-  bool mesh_is_terrain() const { return !scene_.mesh.terrain.file.empty(); }
+  bool mesh_is_terrain() const { return !scene_.mesh->terrain.file.empty(); }
 
   /// Does gravity act against up, as elevations are counted, or not at all?
   bool gravity_is_down() const { return -scene_.gravity[scene_.vertical()] >= (1 - 1e-12) * scene_.gravity_size(); }
 
   /// Density, or porosity and grain density, that follow from unit weights.
   void unit_weight(const std::string &path, BodySource &body) const {
-    const double above = body.unit_weight, below = body.saturated_unit_weight, water = scene_.water.density;
+    const double above = body.unit_weight, below = body.saturated_unit_weight, water = scene_.water->density;
     if (above == 0 && below == 0) return;
     const char *given = above > 0 ? ".unit_weight" : ".saturated_unit_weight";
     const double g = scene_.gravity_size();
@@ -332,35 +331,35 @@ class Checks {
 
   void water() const {
     const bool drained = scene_.phases == PhaseModel::drained, dry = scene_.phases == PhaseModel::dry;
-    if (drained && !scene_.water.given)
+    if (drained && !scene_.water->given)
       reader_.complain(
           "phases",
           "needs pore water: add a table [water] with its table of points [x, elevation], or an empty one for none");
-    if (scene_.gas.given && scene_.phases != PhaseModel::three_phase)
+    if (scene_.gas->given && scene_.phases != PhaseModel::three_phase)
       reader_.complain("gas", "has no effect, since phases = \"" + phases() +
                                   "\" has no gas that moves; set phases = \"three-phase\"");
-    if (dry && scene_.water.given)
+    if (dry && scene_.water->given)
       reader_.complain("water", "has no effect, since phases = \"dry\" has no pore water; set phases = \"drained\"");
-    table("water.table", scene_.water.table);
+    table("water.table", scene_.water->table);
     const bool seeps = std::any_of(scene_.stage.begin(), scene_.stage.end(),
                                    [](const Stage &stage) { return water_flows(stage.kind); });
-    if (scene_.water.suction.given() && scene_.phases == PhaseModel::saturated)
+    if (scene_.water->suction.given() && scene_.phases == PhaseModel::saturated)
       reader_.complain("water.suction",
                        "has no effect, since phases = \"saturated\" keeps all pores full of water under pressure; set "
                        "phases = \"unsaturated\", or leave it out");
-    if (scene_.water.suction.given() && drained && !seeps)
+    if (scene_.water->suction.given() && drained && !seeps)
       reader_.complain("water.suction",
                        "has no effect in a drained scene without a seepage stage: give suction as water.excess below "
                        "zero, or leave it out");
     const bool has_table =
-        scene_.water.table.given() ||
+        scene_.water->table.given() ||
         std::any_of(scene_.body.begin(), scene_.body.end(), [](const BodySource &b) { return b.water_table.given(); });
-    if (!has_table && !(scene_.water.level.constant() && scene_.water.level(0) == 0))
+    if (!has_table && !(scene_.water->level.constant() && scene_.water->level(0) == 0))
       reader_.complain("water.level", "has no effect without a water table, which it raises: give water.table");
   }
 
   void factor_of_safety() const {
-    const FactorSource &search = scene_.factor_of_safety;
+    const FactorSource &search = *scene_.factor_of_safety;
     for (const auto &[key, points, least] :
          {std::tuple{"within", &search.within, std::size_t(3)}, {"along", &search.along, std::size_t(2)}}) {
       const std::string path = std::string("factor_of_safety.") + key;
@@ -407,15 +406,15 @@ class Checks {
                                            ? " (or \"drained\", whose pressure is then computed by seepage)"
                                            : "") +
                            ", not \"" + phases() + "\"");
-    if (drained && water_flows(stage.kind) && !(scene_.water.excess.constant() && scene_.water.excess(0) == 0))
+    if (drained && water_flows(stage.kind) && !(scene_.water->excess.constant() && scene_.water->excess(0) == 0))
       reader_.complain("water.excess",
                        "cannot be combined with seepage, which computes the pressure: give pressures, heads or fluxes "
                        "at [boundary.NAME]");
-    if (stage.kind == StageKind::consolidation && scene_.quasi_static.elements != Elements::quadratic)
+    if (stage.kind == StageKind::consolidation && scene_.quasi_static->elements != Elements::quadratic)
       reader_.complain("quasi_static.elements",
                        "must be \"quadratic\" for consolidation: displacement of first order with pressure of first "
                        "order is not stable");
-    if (stage.kind == StageKind::consolidation && scene_.quasi_static.linear_solver == LinearSolver::iterative)
+    if (stage.kind == StageKind::consolidation && scene_.quasi_static->linear_solver == LinearSolver::iterative)
       reader_.complain(
           "quasi_static.linear_solver",
           "must not be \"iterative\" for consolidation: its matrix is indefinite and is factorised; leave it out");
@@ -451,7 +450,7 @@ class Checks {
     criterion(stage, path);
     if (stage.until != StopWhen::failure) return;
     std::vector<std::string> points;
-    for (const OutputPoint &point : scene_.output.point) points.push_back(point.name);
+    for (const OutputPoint &point : scene_.output->point) points.push_back(point.name);
     if (points.empty())
       reader_.complain(path, "ends by failure of a point, but the scene has no points: add [output.point.NAME]");
     if (std::find(points.begin(), points.end(), stage.failure_point) == points.end())
@@ -553,36 +552,6 @@ Scene parse(const std::string &text, const std::string &file, const std::vector<
 }
 
 }  // namespace
-
-double Scene::gravity_size() const {
-  return std::sqrt(std::inner_product(gravity.begin(), gravity.end(), gravity.begin(), 0.));
-}
-
-std::array<double, 3> Scene::upward() const {
-  std::array<double, 3> direction{};
-  direction[vertical()] = 1;
-  if (const double g = gravity_size(); g > 0)
-    for (std::size_t d = 0; d < gravity.size(); ++d) direction[d] = -gravity[d] / g;
-  return direction;
-}
-
-std::array<double, 3> Scene::acceleration_in(const Stage &one) const {
-  std::array<double, 3> acceleration{};
-  std::copy(gravity.begin(), gravity.end(), acceleration.begin());
-  for (std::size_t d = 0; d < one.seismic_coefficient.size(); ++d)
-    acceleration[d] += gravity_size() * one.seismic_coefficient[d];
-  return acceleration;
-}
-
-std::string Scene::function_fault() const { return root ? root->function_fault() : ""; }
-void Scene::forget_function_faults() const {
-  if (root) root->forget_function_faults();
-}
-
-void Scene::complain(const std::string &key_path, const std::string &sentence) const {
-  if (root) root->complain(key_path, sentence);
-  throw SceneError(key_path + " " + sentence);  // a scene that a program filled in itself
-}
 
 Scene parse_scene(const std::string &text, const std::string &file, const std::vector<std::string> &overrides) {
   return parse(text, file, overrides, false);

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "scene/scene.h"
+#include "scene/stage.h"
 
 namespace talus {
 

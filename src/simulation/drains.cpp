@@ -3,6 +3,9 @@
 #include <algorithm>
 
 #include "physics/boundary/pore_conditions.h"
+#include "scene/boundary_source.h"
+#include "scene/scene.h"
+#include "scene/stage.h"
 #include "solvers/quasi_static/faces_inside.h"
 
 namespace talus {

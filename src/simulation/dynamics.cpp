@@ -5,7 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/mesh_source.h"
 #include "scene/reader.h"
+#include "scene/scene.h"
+#include "scene/stage.h"
+#include "scene/transfer_source.h"
+#include "scene/water_source.h"
 
 namespace talus {
 
@@ -14,13 +19,13 @@ IntegratorSettings choose_integrator(const Scene &scene) {
   DeferredTable table = scene.integrator;
   const IntegratorSettings settings = read_integrator(table, phases.liquid);
   const bool by_euler = std::holds_alternative<EulerSettings>(settings);
-  if (scene.water.drag == PoreDrag::at_start && !(phases.liquid && by_euler))
+  if (scene.water->drag == PoreDrag::at_start && !(phases.liquid && by_euler))
     scene.complain("water.drag",
                    std::string("can be \"explicit\" only ") +
                        (phases.liquid ? "with integrator.kind = \"euler\": the others take drag over a step"
                                       : "where pore fluids move") +
                        "; leave it out");
-  if (scene.water.storage == PoreStorage::rate && !(phases.suction && !phases.gas && by_euler))
+  if (scene.water->storage == PoreStorage::rate && !(phases.suction && !phases.gas && by_euler))
     scene.complain("water.storage",
                    "can be \"rate\" only with phases = \"unsaturated\" and integrator.kind = \"euler\"; leave it out");
   if (!phases.liquid) return settings;
@@ -46,7 +51,7 @@ int ranks_of(MPI_Comm comm) {
 template <int dim>
 long long cells_to_divide(const World<dim> &world) {
   const long long all = world.mesh.report().cells;
-  const int halvings = world.scene.mesh.halvings;
+  const int halvings = world.scene.mesh->halvings;
   return halvings == 0 ? all : (all >> dim * halvings) + all / ranks_of(world.comm);
 }
 
@@ -60,7 +65,7 @@ Dynamics<dim>::Dynamics(World<dim> &world, Clock &clock, const IntegratorSetting
           choose_step_bound(world.scene, world.laws, world.report(), settings, world.mesh.report().one_element_slice)),
       settings_(with_bound(settings, bound_.by)),
       integrator_(make_integrator(settings_)),
-      balancing_(world.scene.mesh.balance_ranks, ranks_of(world.comm), cells_to_divide(world), world.mesh.divisible()) {
+      balancing_(world.scene.mesh->balance_ranks, ranks_of(world.comm), cells_to_divide(world), world.mesh.divisible()) {
   check_fixed_step();
 }
 
@@ -157,7 +162,7 @@ PetscErrorCode Dynamics<dim>::step(double until) {
   clock_.time += step, clock_.last_step = step;
   if (!clock_.hold_loads) clock_.load_time += step;
   ++clock_.steps;
-  remap_due_ = world_.scene.transfer.remap_interval == 0;
+  remap_due_ = world_.scene.transfer->remap_interval == 0;
   PetscFunctionReturn(0);
 }
 
@@ -188,7 +193,7 @@ Verdict Dynamics<dim>::agree() {
         "end the stage by its duration");
   const Verdict verdict{all[0], all[1], {all[5], all[6], all[7]}, all[2] > 0, all[3] > 0, all[4] > 0};
   shrink_ = 1 / verdict.shrink;
-  if (verdict.moved > world_.scene.transfer.remap_interval || verdict.inverted) remap_due_ = true;
+  if (verdict.moved > world_.scene.transfer->remap_interval || verdict.inverted) remap_due_ = true;
   if (remap_due_) moved_since_estimate_ += verdict.moved;
   return verdict;
 }
@@ -239,6 +244,11 @@ void Dynamics<dim>::serialize(Archive &archive) {
   if (archive.reading()) integrator_ = make_integrator(settings_);  // the nodes are others
   integrator_->serialize(archive);
   known_releases_ = world_.releases();
+}
+
+template <int dim>
+bool Dynamics<dim>::explicit_drag() const {
+  return world_.scene.water->drag == PoreDrag::at_start;
 }
 
 template class Dynamics<2>;

@@ -57,7 +57,7 @@ class Dynamics {
 
  private:
   void check_fixed_step();
-  bool explicit_drag() const { return world_.scene.water.drag == PoreDrag::at_start; }
+  bool explicit_drag() const;
   void notice_release();
   PetscErrorCode step(double until);
   Verdict agree();

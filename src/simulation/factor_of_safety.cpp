@@ -3,6 +3,11 @@
 #include <cmath>
 #include <cstdio>
 
+#include "scene/body_source.h"
+#include "scene/factor_source.h"
+#include "scene/quasi_static_source.h"
+#include "scene/scene.h"
+#include "scene/stage.h"
 #include "scene/stress_at_rest.h"
 #include "simulation/search_region.h"
 #include "simulation/simulation_impl.h"
@@ -74,7 +79,7 @@ FactorOfSafety Simulation<dim>::factor_of_safety() {
         scene.complain("boundary." + source.name + ".kind",
                        "leaves no factor of safety in 3D, which needs elements of second order: the corners of their "
                        "facets bear nothing on a base; take fixed or roller, or a section in plane strain");
-  const Elements asked = scene.quasi_static.elements;
+  const Elements asked = scene.quasi_static->elements;
   if (run_.statics.made() && asked != Elements::quadratic)
     throw RunError(
         "the stages have been solved with elements of first order, which give factors of safety that are too large; "
@@ -266,12 +271,12 @@ FactorOfSafety Simulation<dim>::reduce_strength() {
                          " is not reduced: " + law_name(world.laws[b]) + " " + no_strength_reduction(world.laws[b]));
   note_yielding_ground(world, run_.recorder);
   bool stopped = false;
-  const SearchRegion region(run_.scene.factor_of_safety);
+  const SearchRegion region(*run_.scene.factor_of_safety);
   ReductionSettings<dim> settings;
   if (world.phases.liquid) settings.flow = &run_.statics.flow();
   settings.stands = run_.statics.lost_stages.empty(), settings.by_own_flow = settings.stands && !run_.statics.dilated;
   settings.load_time = run_.clock.load_time, settings.time = run_.clock.time;
-  settings.shown_displacement = 0.01 * extent, settings.mechanisms = run_.scene.factor_of_safety.mechanisms;
+  settings.shown_displacement = 0.01 * extent, settings.mechanisms = run_.scene.factor_of_safety->mechanisms;
   if (!region.everywhere())
     settings.divided = [&, vertical = run_.scene.vertical()](const Vec<dim> &x, double size) {
       return region.holds(x[0], x[vertical], size);
@@ -279,7 +284,7 @@ FactorOfSafety Simulation<dim>::reduce_strength() {
   settings.tell_confined = [&](double share) {
     if (share == 0)
       run_.scene.complain(
-          std::string("factor_of_safety.") + (run_.scene.factor_of_safety.within.empty() ? "along" : "within"),
+          std::string("factor_of_safety.") + (run_.scene.factor_of_safety->within.empty() ? "along" : "within"),
           "must lie in the soil; it holds none");
     run_.recorder.note("the search is confined to " + rounded(100 * share) +
                        " % of the soil; elsewhere soil keeps its strength");

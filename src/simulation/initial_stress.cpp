@@ -2,6 +2,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/body_source.h"
+#include "scene/scene.h"
+#include "scene/water_source.h"
 #include "simulation/overburden.h"
 #include "simulation/statics.h"
 
@@ -50,7 +53,7 @@ void Statics<dim>::start_stress() {
       double weight = overburden.above(x, &surface[vertical]), pressure = 0;
       if (world_.phases.prescribed) {
         pressure = world_.pressure(x, clock_.load_time, static_cast<int>(b));
-        if (world_.scene.water.open_water_load) weight += world_.pressure(surface, clock_.load_time, common_water);
+        if (world_.scene.water->open_water_load) weight += world_.pressure(surface, clock_.load_time, common_water);
       }
       if (world_.phases.liquid) {
         weight += open_water(surface);

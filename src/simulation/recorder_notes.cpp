@@ -5,6 +5,9 @@
 #include <sstream>
 
 #include "output/escaped_table.h"
+#include "scene/output_source.h"
+#include "scene/scene.h"
+#include "scene/stage.h"
 #include "simulation/recorder.h"
 #include "simulation/ways_out.h"
 
@@ -238,7 +241,7 @@ void Recorder<dim>::fail(const std::string &cause) {
     results_->progress.failure(message.str());
     if (options_.pictures && !interrupted && results_->file.last_step() >= 0)
       throw BrokenOff(message.str() + "; report.html there shows how far it came", options_.directory,
-                      scene_.output.picture);
+                      scene_.output->picture);
   }
   throw RunError(message.str());
 }

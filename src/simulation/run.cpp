@@ -7,7 +7,11 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "scene/body_source.h"
 #include "scene/reader.h"
+#include "scene/scene.h"
+#include "scene/stage.h"
+#include "scene/start_from.h"
 #include "simulation/moved_before.h"
 #include "simulation/start_from.h"
 
@@ -43,7 +47,7 @@ Run<dim>::Run(MPI_Comm comm, const Scene &of, const RunOptions &with, const std:
       statics(world, clock),
       energies(world, clock, statics),
       recorder({world, clock, dynamics, statics, points, lines, energies}, options) {
-  if (!scene.start_from.folder.empty() && !options.resume) start_from_other_run();
+  if (!scene.start_from->folder.empty() && !options.resume) start_from_other_run();
 }
 
 template <int dim>
@@ -140,7 +144,7 @@ template <int dim>
 Holdings Run<dim>::holdings() const {
   Holdings mine{world.mesh.global_cell, world.mesh.global_node};
   // edges have nodes of finite elements, if not in a stage of this scene then in one of the run that it starts from
-  if (!scene.start_from.folder.empty() ||
+  if (!scene.start_from->folder.empty() ||
       std::ranges::any_of(scene.stage, [](const Stage &s) { return is_static(s.kind); })) {
     const std::vector<long long> edges = world.mesh.global_edges();
     mine.points.insert(mine.points.end(), edges.begin(), edges.end());
@@ -211,7 +215,7 @@ void Run<dim>::resume() {
 /// A remap makes that what nodes and cells hold comes about anew, at time 0 and with the keys of this scene.
 template <int dim>
 void Run<dim>::start_from_other_run() {
-  const std::string folder = scene.start_from.folder;
+  const std::string folder = scene.start_from->folder;
   std::error_code missing;
   if (!options.directory.empty() && std::filesystem::equivalent(folder, options.directory, missing))
     scene.complain("start_from.folder", "must not be the folder of this run's own results; choose another one with -o");
@@ -232,7 +236,7 @@ void Run<dim>::start_from_other_run() {
     std::ostringstream from;
     from << "starts at the state of the run in " << folder << ", t = " << clock.time << " s, step " << clock.steps;
     if (world.motion->gathered()) require(world.release(clock.time));
-    if (scene.start_from.reset_displacement || (progress.resets && (progress.met || progress.told)))
+    if (scene.start_from->reset_displacement || (progress.resets && (progress.met || progress.told)))
       reset_displacement(), from << ", with displacements set to zero";
     start_notes.push_back(from.str());
     for (const std::string &key : changed) start_notes.push_back("since then the scene has another " + key);
@@ -254,6 +258,21 @@ void Run<dim>::heed(const Verdict &verdict) {
   recorder.write_history();
   recorder.write_snapshot();
   throw RunFailure("interrupted");
+}
+
+template <int dim>
+const Stage &Run<dim>::stage() const {
+  return scene.stage[progress.number];
+}
+
+template <int dim>
+bool Run<dim>::last_stage() const {
+  return progress.number + 1 == static_cast<int>(scene.stage.size());
+}
+
+template <int dim>
+bool Run<dim>::is_past_stage() const {
+  return clock.time > (progress.begin + stage().duration) * (1 + 1e-9);
 }
 
 template struct Run<2>;

@@ -23,10 +23,10 @@ struct Run {
   /// Collective.
   Run(MPI_Comm comm, const Scene &scene, const RunOptions &options, const std::string &mesh_file);
 
-  const Stage &stage() const { return scene.stage[progress.number]; }
-  bool last_stage() const { return progress.number + 1 == static_cast<int>(scene.stage.size()); }
+  const Stage &stage() const;
+  bool last_stage() const;
   /// Has the present stage lasted longer than its duration, which a resumed run may shorten?
-  bool is_past_stage() const { return clock.time > (progress.begin + stage().duration) * (1 + 1e-9); }
+  bool is_past_stage() const;
   void begin_next_stage();
   /// Sums of the present state. Collective.
   Balance balance();

@@ -6,6 +6,9 @@
 #include <sstream>
 
 #include "base/freed_memory.h"
+#include "scene/body_source.h"
+#include "scene/scene.h"
+#include "scene/stage.h"
 #include "simulation/stages/stage_runner.h"
 
 namespace talus {

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "scene/body_source.h"
+#include "scene/scene.h"
 #include "simulation/failure.h"
 
 namespace talus {

@@ -77,7 +77,7 @@ class Statics {
   /// where stages lose equilibrium, unless their soil softens.
   bool for_factor = false;
   /// Elements of first order make factors too large: a factor of safety has always those of second order.
-  Elements elements() const { return for_factor ? Elements::quadratic : world_.scene.quasi_static.elements; }
+  Elements elements() const;
   std::vector<std::string> lost_stages;  ///< names of these stages
   bool dilated = false;                  ///< a stage found its equilibrium with psi = phi, see settle_propped
   /// What motion had done to the soil when the stage under way began.

@@ -4,6 +4,8 @@
 #include <limits>
 
 #include "output/together.h"
+#include "scene/body_source.h"
+#include "scene/scene.h"
 #include "simulation/statics.h"
 
 namespace talus {

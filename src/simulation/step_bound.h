@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "physics/laws/laws.h"
-#include "scene/scene.h"
 #include "simulation.h"
 #include "solvers/integrators.h"
 

@@ -9,6 +9,10 @@
 #include <sstream>
 
 #include "base/sum.h"
+#include "scene/body_source.h"
+#include "scene/mesh_source.h"
+#include "scene/scene.h"
+#include "scene/stage.h"
 #include "solvers/quasi_static/pore_flow.h"
 #include "solvers/quasi_static/thin_bodies.h"
 
@@ -130,7 +134,7 @@ std::string World<dim>::thrown(double speed) const {
 template <int dim>
 PetscErrorCode World<dim>::take_out(double time) {
   PetscFunctionBeginUser;
-  if (scene.mesh.leaving_particles == WhenOutside::stop) {
+  if (scene.mesh->leaving_particles == WhenOutside::stop) {
     size_t b = 0;
     while (b < bodies.size() && outside_[b].empty()) ++b;
     const bool mine = b < bodies.size();
@@ -370,6 +374,10 @@ PetscErrorCode World<dim>::serialize(Archive &archive) {
   archive.sums("movers", counts_.movers);
   if (archive.reading()) count_runs();
   PetscFunctionReturn(0);
+}
+
+bool has_flow_stages(const Scene &scene) {
+  return std::any_of(scene.stage.begin(), scene.stage.end(), [](const Stage &s) { return water_flows(s.kind); });
 }
 
 template class World<2>;

@@ -13,6 +13,7 @@
 #include "physics/laws/strength_by_place.h"
 #include "physics/phase_models.h"
 #include "physics/prescribed_pressure.h"
+#include "scene/scene.h"
 #include "simulation.h"
 #include "simulation/clock.h"
 #include "simulation/failure.h"
@@ -21,6 +22,8 @@
 #include "solvers/critical_step.h"
 
 namespace talus {
+
+struct Stage;
 
 template <int dim>
 class World {
@@ -155,8 +158,6 @@ class World {
 };
 
 /// Do seepage or consolidation stages let pore water flow?
-inline bool has_flow_stages(const Scene &scene) {
-  return std::any_of(scene.stage.begin(), scene.stage.end(), [](const Stage &s) { return water_flows(s.kind); });
-}
+bool has_flow_stages(const Scene &scene);
 
 }  // namespace talus

@@ -5,7 +5,14 @@
 
 #include "physics/boundary/pore_conditions.h"
 #include "physics/boundary/prescribed_directions.h"
+#include "scene/body_source.h"
+#include "scene/mesh_source.h"
+#include "scene/output_source.h"
+#include "scene/quasi_static_source.h"
 #include "scene/reader.h"
+#include "scene/scene.h"
+#include "scene/stage.h"
+#include "scene/water_source.h"
 #include "scene/words.h"
 #include "simulation/drains.h"
 #include "simulation/world.h"
@@ -57,8 +64,8 @@ void World<dim>::check_boxes() const {
     MPI_Allreduce(MPI_IN_PLACE, &found, 1, MPI_INT, MPI_MAX, comm);
     if (!found) scene.complain(path, why);
   };
-  for (size_t k = 0; k < scene.mesh.refine.size(); ++k) {
-    const RefineBox &box = scene.mesh.refine[k];
+  for (size_t k = 0; k < scene.mesh->refine.size(); ++k) {
+    const RefineBox &box = scene.mesh->refine[k];
     int found = 0;  // cells are refined by x and y, for all z
     for (const Cell<dim> &cell : mesh.cells) {
       bool overlaps = true;
@@ -102,7 +109,7 @@ void World<dim>::check_something_acts(const std::vector<Source> &sources) const 
     return source.kind.in_motion == OnSoil::load || source.kind.template on_soil<dim>().speed ||
            source.kind.fluid_face();
   });
-  if (moved || pushed || scene.gravity_size() > 0 || scene.water.given || scene.gas.given) return;
+  if (moved || pushed || scene.gravity_size() > 0 || scene.water->given || scene.gas->given) return;
   for (size_t k = 0; k < scene.stage.size(); ++k)
     if (scene.stage[k].until == StopWhen::equilibrium || scene.stage[k].until == StopWhen::rest)
       scene.complain("stage." + std::to_string(k) + ".until",
@@ -158,7 +165,7 @@ void World<dim>::check_quasi_static_base(const std::string &path) const {
   if (phases.liquid)
     scene.complain(path + ".kind", std::string("has no quasi-static form where pore fluids move (phases = \"") +
                                        phases.name + "\"): take roller or fixed, or a dynamic stage");
-  if (dim == 3 && scene.quasi_static.elements == Elements::quadratic)
+  if (dim == 3 && scene.quasi_static->elements == Elements::quadratic)
     scene.complain("quasi_static.elements",
                    "must be \"patches\" or \"linear\" in 3D with " + path +
                        ", a base with friction: the corners of facets of second order bear nothing");
@@ -192,7 +199,7 @@ void World<dim>::check_boundaries(const std::vector<Source> &sources) const {
       if (std::ranges::count(groups, group) == 0)
         scene.complain(path + ".group",
                        "must name groups of facets; the mesh has no \"" + group + "\"; " + suggestion(group, groups));
-    for (const OutputPoint &point : scene.output.point)
+    for (const OutputPoint &point : scene.output->point)
       if (point.name == source.name && source.kind.in_motion == OnSoil::load)
         scene.complain("output.point." + point.name,
                        "has the name of boundary." + source.name +
@@ -216,7 +223,7 @@ void World<dim>::check_boundaries(const std::vector<Source> &sources) const {
       scene.complain(path + ".kind", "has no quasi-static form; take fixed, roller, velocity or traction");
     if (quasi_static && source.kind.quasi_static == OnSoil::contact) check_quasi_static_base(path);
     if (quasi_static && source.kind.remembers) check_fresh_base(path);
-    if (source.kind.in_motion == OnSoil::contact && phases.prescribed && !scene.water.open_water_load)
+    if (source.kind.in_motion == OnSoil::contact && phases.prescribed && !scene.water->open_water_load)
       scene.complain(path + ".kind",
                      "rubs with effective stress, which it does not know with water.open_water_load = false; leave "
                      "open_water_load at true, and where no open water shall rest on a face let the water table of the "

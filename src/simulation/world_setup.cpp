@@ -5,8 +5,15 @@
 
 #include "base/freed_memory.h"
 #include "base/sum.h"
+#include "scene/body_source.h"
+#include "scene/boundary_source.h"
+#include "scene/mesh_source.h"
 #include "scene/place_grid.h"
 #include "scene/reader.h"
+#include "scene/scene.h"
+#include "scene/stage.h"
+#include "scene/transfer_source.h"
+#include "scene/water_source.h"
 #include "simulation/gap_walls.h"
 #include "simulation/world.h"
 #include "solvers/quasi_static/pore_flow.h"
@@ -119,10 +126,10 @@ void World<dim>::read_mesh(DM plex, const std::string &mesh_file, const Cuts &cu
     mesh = BackgroundMesh<dim>::adopt(plex);
   else
     try {
-      mesh = BackgroundMesh<dim>::read(comm, mesh_file, weights, cuts, scene.mesh.halvings, seeds);
+      mesh = BackgroundMesh<dim>::read(comm, mesh_file, weights, cuts, scene.mesh->halvings, seeds);
     } catch (const std::invalid_argument &error) {
-      scene.complain(!scene.mesh.file.empty()      ? "mesh.file"
-                     : !scene.mesh.section.empty() ? "mesh.section"
+      scene.complain(!scene.mesh->file.empty()      ? "mesh.file"
+                     : !scene.mesh->section.empty() ? "mesh.section"
                                                    : "mesh.terrain",
                      std::string("cannot serve: ") + error.what());
     }
@@ -149,7 +156,7 @@ double World<dim>::soil_density(const BodySource &source, const Vec<dim> &x, dou
   const int soil = static_cast<int>(&source - scene.body.data());
   double density = (1 - source.porosity) *
                    source.grain_density;  // where fluids move on their own, particles' mass is that of the grains
-  if (phases.prescribed) density += source.porosity * scene.water.density * pressure.saturation(source, x, t, soil);
+  if (phases.prescribed) density += source.porosity * scene.water->density * pressure.saturation(source, x, t, soil);
   return density;
 }
 
@@ -255,7 +262,7 @@ void World<dim>::close_bases() {
 
 template <int dim>
 void World<dim>::make_motion() {
-  const double relaxation = scene.transfer.relaxation * smallest_altitude_ / wave_speed_;
+  const double relaxation = scene.transfer->relaxation * smallest_altitude_ / wave_speed_;
   motion = make_soil_motion(
       MotionParts<dim>{mesh, bodies, conditions, scene, pressure, relaxation, seeded_mass_, seeded_particles_});
 }

@@ -3,6 +3,8 @@
 #include <cmath>
 
 #include "physics/pores/pore_fluid.h"
+#include "scene/body_source.h"
+#include "scene/scene.h"
 
 namespace talus {
 

@@ -4,7 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "scene/scene.h"
+#include "base/units.h"
+
 
 namespace talus {
 

@@ -1,6 +1,7 @@
 #pragma once
+#include "base/units.h"
 #include "earthquake/ground_motion.h"
-#include "scene/scene.h"
+#include "scene/required.h"
 
 namespace talus {
 

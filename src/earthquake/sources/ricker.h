@@ -1,8 +1,9 @@
 #pragma once
 #include <numbers>
 
+#include "base/units.h"
 #include "earthquake/sources/sampled.h"
-#include "scene/scene.h"
+#include "scene/required.h"
 
 namespace talus {
 

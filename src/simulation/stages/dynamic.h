@@ -5,6 +5,9 @@
 #include <limits>
 #include <sstream>
 
+#include "scene/output_source.h"
+#include "scene/scene.h"
+#include "scene/stage.h"
 #include "simulation/stages/stage_runner.h"
 #include "simulation/still_moving.h"
 
@@ -47,7 +50,7 @@ class DynamicStage final : public StageRunner<dim> {
       run_.dynamics.watch = [&points = run_.points, point](Vec<3> *v) { return points.velocity(point, v); };
     double longest = 0;
     for (const Stage &s : run_.scene.stage) longest = std::max(longest, s.duration);
-    const Output &output = run_.scene.output;
+    const Output &output = *run_.scene.output;
     history_interval_ = output.history_interval > 0 ? output.history_interval : longest / 200;
     checkpoint_interval_ = output.checkpoint_interval > 0 ? output.checkpoint_interval : output.interval;
     set_loading();
@@ -62,7 +65,7 @@ class DynamicStage final : public StageRunner<dim> {
   void advance() {
     const double begin = run_.progress.begin, &now = run_.clock.time;
     const double row = next_time(begin, history_interval_, now),
-                 snapshot = next_time(begin, run_.scene.output.interval, now),
+                 snapshot = next_time(begin, run_.scene.output->interval, now),
                  checkpoint = next_time(begin, checkpoint_interval_, now);
     set_loading();
     const Verdict verdict = run_.dynamics.cycle(run_.dynamics.fixed_step() ? end() : std::min(end(), snapshot));

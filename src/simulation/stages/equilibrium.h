@@ -1,5 +1,9 @@
 #pragma once
 /// Quasi-static equilibrium along a path of loads.
+#include "scene/quasi_static_source.h"
+#include "scene/scene.h"
+#include "scene/stage.h"
+#include "scene/start_from.h"
 #include "simulation/stages/static_stage.h"
 
 namespace talus {
@@ -25,7 +29,7 @@ class EquilibriumStage final : public StaticStage<dim> {
         return find_failure(problem, this->run_.world.laws, this->load_at(1), this->run_.clock.time, outcome);
       };
     require(follow_path(
-        1. / stage.load_steps, this->run_.scene.quasi_static.smallest_step, advance, failure,
+        1. / stage.load_steps, this->run_.scene.quasi_static->smallest_step, advance, failure,
         [&](double share, const StepOutcome &) { this->done(share); }, &path.share, &path.last, &path.iterations));
     if (path.share < 1 && may_settle(path)) settle(path);
   }
@@ -38,7 +42,7 @@ class EquilibriumStage final : public StaticStage<dim> {
   bool may_settle(const Path &path) const {
     const bool may_go_on = this->stage_.when_lost != WhenLost::stop && !this->run_.statics.for_factor;
     const bool loses_strength = this->stage_.softening && std::ranges::any_of(this->run_.world.laws, softens);
-    return this->run_.progress.number == 0 && this->run_.scene.start_from.folder.empty() && !may_go_on &&
+    return this->run_.progress.number == 0 && this->run_.scene.start_from->folder.empty() && !may_go_on &&
            !loses_strength && !path.last.stopped && !path.last.fails && !on_base() &&
            !this->run_.statics.problem().supports().moves();
   }

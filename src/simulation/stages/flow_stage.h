@@ -1,5 +1,8 @@
 #pragma once
 /// What stages in which pore water flows have in common, docs/theory/seepage.md.
+#include "scene/quasi_static_source.h"
+#include "scene/scene.h"
+#include "scene/stage.h"
 #include "simulation/changing_loads.h"
 #include "simulation/stages/static_stage.h"
 #include "solvers/quasi_static/flow_path.h"
@@ -34,7 +37,7 @@ class FlowStage : public StaticStage<dim> {
     const FluidBooks &books = this->run_.recorder.fluids();
     const double seeped = books.seeped(), handed = books.handed(0);
     require(follow_flow(this->run_.world.comm, this->soil_moves() ? &statics.problem() : nullptr, statics.flow(),
-                        this->run_.scene.quasi_static, flow, &path.share, &path.last, &path.iterations));
+                        *this->run_.scene.quasi_static, flow, &path.share, &path.last, &path.iterations));
     entered_ = books.seeped() - seeped, handed_ = books.handed(0) - handed;
     if (this->run_.world.phases.liquid) water_ = this->run_.fluids()[0].stored;
   }

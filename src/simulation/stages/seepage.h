@@ -1,5 +1,6 @@
 #pragma once
 /// Flow of pore water through soil at rest.
+#include "scene/stage.h"
 #include "simulation/stages/flow_stage.h"
 
 namespace talus {

@@ -1,4 +1,5 @@
 /// The list of the kinds of stages: one line to add one.
+#include "scene/stage.h"
 #include "simulation/stages/consolidation.h"
 #include "simulation/stages/dynamic.h"
 #include "simulation/stages/equilibrium.h"

@@ -7,7 +7,10 @@
 #include <sstream>
 
 #include "base/rounded.h"
+#include "scene/output_source.h"
 #include "scene/reader.h"
+#include "scene/scene.h"
+#include "scene/stage.h"
 #include "simulation/changing_loads.h"
 #include "simulation/softening.h"
 #include "simulation/stages/stage_runner.h"
@@ -54,7 +57,7 @@ class StaticStage : public StageRunner<dim> {
     run_.hand_to_particles();
     run_.recorder.progress();
     run_.recorder.write_history();
-    const double interval = run_.scene.output.interval, elapsed = share * stage_.duration;
+    const double interval = run_.scene.output->interval, elapsed = share * stage_.duration;
     if (interval > 0 && share < 1 && elapsed >= snapshots_ * interval * (1 - 1e-9))
       run_.recorder.write_snapshot(), snapshots_ = std::floor(elapsed / interval * (1 + 1e-9)) + 1;
     int stop = interrupted;

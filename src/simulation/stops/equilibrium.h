@@ -1,6 +1,7 @@
 #pragma once
 /// Once gravity is whole: out-of-balance forces are small against the applied ones, and kinetic energy against strain
 /// energy; and nothing that acts on the soil has still to change.
+#include "scene/stage.h"
 #include "simulation/run.h"
 #include "simulation/stops/loads_to_come.h"
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "scene/stage.h"
 #include "simulation/run.h"
 
 namespace talus {

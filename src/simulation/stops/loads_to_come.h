@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "scene/stage.h"
 #include "simulation/changing_loads.h"
 #include "simulation/run.h"
 

@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "physics/phase_models.h"
+#include "scene/scene.h"
+#include "scene/stage.h"
 #include "simulation/run.h"
 #include "simulation/still_moving.h"
 #include "simulation/stops/loads_to_come.h"

@@ -1,6 +1,7 @@
 /// The list of stop criteria: one line to add one.
 #include <stdexcept>
 
+#include "scene/stage.h"
 #include "simulation/stops/duration.h"
 #include "simulation/stops/equilibrium.h"
 #include "simulation/stops/failure.h"

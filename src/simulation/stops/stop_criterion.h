@@ -3,10 +3,10 @@
 #include <memory>
 
 #include "base/archive.h"
-#include "scene/scene.h"
 
 namespace talus {
 
+struct Stage;
 template <int dim>
 struct Run;
 struct Verdict;

@@ -5,7 +5,11 @@
 
 #include "mesh_source.h"
 #include "physics/soil_motion.h"
+#include "scene/body_source.h"
+#include "scene/boundary_source.h"
 #include "scene/reader.h"
+#include "scene/scene.h"
+#include "scene/water_source.h"
 
 namespace talus {
 
@@ -26,7 +30,7 @@ struct Soil {
     EXPECT_EQ(
         bodies[0]->create(mesh.comm(), source, read_law(source.law), traits_of<Phases>.fluids(), loads.face_count()),
         0);
-    const double water = Phases::liquid ? 0 : source.porosity * scene.water.density;
+    const double water = Phases::liquid ? 0 : source.porosity * scene.water->density;
     const double density = source.density > 0 ? source.density : (1 - source.porosity) * source.grain_density + water;
     seed<dim>(*bodies[0], mesh, 8, [&](const Vec<dim> &) { return density; });
     loads.seed(*bodies[0], mesh);

@@ -9,6 +9,7 @@
 
 #include "physics/laws/laws.h"
 #include "physics/pores/retention.h"
+#include "scene/body_source.h"
 #include "scene/describe.h"
 #include "scene/reader.h"
 #include "scene/scene.h"

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "scene/body_source.h"
 #include "simulation/output_fields.h"
 
 namespace talus {

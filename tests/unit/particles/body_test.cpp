@@ -1,5 +1,6 @@
 // Claims of particles/body.h: the volume that particles may take, and particles that are taken out.
 #include "particles/body.h"
+#include "scene/body_source.h"
 
 #include <gtest/gtest.h>
 

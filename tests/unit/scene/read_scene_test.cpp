@@ -6,8 +6,13 @@
 #include <set>
 
 #include "complaint.h"
+#include "scene/body_source.h"
+#include "scene/boundary_source.h"
+#include "scene/output_source.h"
 #include "scene/reader.h"
 #include "scene/scene.h"
+#include "scene/stage.h"
+#include "scene/water_source.h"
 
 namespace talus {
 namespace {
@@ -86,17 +91,17 @@ TEST(ReadScene, ReadsADryScene) {
   EXPECT_EQ(scene.body[0].density, 2000);
   EXPECT_TRUE(scene.body[0].law.reader);
   EXPECT_FALSE(scene.integrator.reader);
-  EXPECT_FALSE(scene.water.given);
+  EXPECT_FALSE(scene.water->given);
   EXPECT_EQ(scene.boundary[0].group, std::vector<std::string>{"base"});
   EXPECT_EQ(scene.stage[0].duration, 60);
-  EXPECT_EQ(scene.output.point[0].name, "crest");
+  EXPECT_EQ(scene.output->point[0].name, "crest");
 }
 
 TEST(ReadScene, ReadsADrainedScene) {
   const Scene scene = parse_scene(drained, "slope.toml");
   EXPECT_EQ(scene.phases, PhaseModel::drained);
-  EXPECT_TRUE(scene.water.given);
-  EXPECT_EQ(scene.water.table.points[1], (std::vector<double>{10, 2}));
+  EXPECT_TRUE(scene.water->given);
+  EXPECT_EQ(scene.water->table.points[1], (std::vector<double>{10, 2}));
   EXPECT_EQ(scene.body[0].grain_density, 2650);
   EXPECT_EQ(scene.gravity, (std::vector<double>{0, 0}));
 }
@@ -108,13 +113,13 @@ TEST(ReadScene, PointsASingleGravityDownInThreeDimensions) {
 
 TEST(ReadScene, PointsOfASectionLieInTheMiddleOfItsBody) {
   const std::string text = drained + "[output.point.crest]\nposition = [1, 2]\n";
-  EXPECT_EQ(parse_scene(text, "slope.toml").output.point[0].position, (std::vector<double>{1, 2}));
+  EXPECT_EQ(parse_scene(text, "slope.toml").output->point[0].position, (std::vector<double>{1, 2}));
   const Scene slice = parse_scene(text, "slope.toml", {"dimension=3", "output.line.slip.points=[[0, 1], [4, 2, 0.1]]"});
-  EXPECT_EQ(slice.output.point[0].position, (std::vector<double>{1, 2, 0.5}));  // of a cell of 1 m
-  EXPECT_EQ(slice.output.line[0].points[0], (std::vector<double>{0, 1, 0.5}));
-  EXPECT_EQ(slice.output.line[0].points[1], (std::vector<double>{4, 2, 0.1}));
+  EXPECT_EQ(slice.output->point[0].position, (std::vector<double>{1, 2, 0.5}));  // of a cell of 1 m
+  EXPECT_EQ(slice.output->line[0].points[0], (std::vector<double>{0, 1, 0.5}));
+  EXPECT_EQ(slice.output->line[0].points[1], (std::vector<double>{4, 2, 0.1}));
   const Scene thick = parse_scene(text, "slope.toml", {"dimension=3", "mesh.thickness=6"});
-  EXPECT_EQ(thick.output.point[0].position, (std::vector<double>{1, 2, 3}));
+  EXPECT_EQ(thick.output->point[0].position, (std::vector<double>{1, 2, 3}));
   EXPECT_NE(refusal(dry, {"dimension=3"}).find("must have 3 coordinates, not 2"),
             std::string::npos);  // a mesh from a file
 }
