@@ -3,6 +3,7 @@
 
 #include "base/rounded.h"
 #include "doubts/doubts.h"
+#include "earthquake/sources.h"
 #include "scene/body_source.h"
 #include "scene/scene.h"
 #include "scene/stage.h"
@@ -30,6 +31,8 @@ void doubt_stages(const Scene &scene, Doubts &doubts) {
                                   flowed + " has brought is undone");
     if (water_flows(stage.kind)) flowed = stage.name;
   }
+  for (const EarthquakeSource &component : scene.earthquake)
+    if (const std::string sentence = drift_of(read_motion(component)); !sentence.empty()) doubts.say("drift", sentence);
   for (const ChangingLoad &load : changing_loads(scene)) {
     const double begin = std::ranges::min_element(load.when, {}, &TimeSpan::begin)->begin;
     if (end == 0)

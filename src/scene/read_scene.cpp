@@ -43,6 +43,7 @@ class Checks {
       stage(scene_.stage[i], "stage." + std::to_string(i));
     }
     bodies_that_come_and_go();
+    earthquake();
     factor_of_safety();
     if (scene_.start_from->reset_displacement && scene_.start_from->folder.empty())
       reader_.complain(
@@ -61,6 +62,19 @@ class Checks {
     const MeshSource &mesh = *scene_.mesh;
     if (scene_.dimension == 3 && !mesh.section.empty() && point.size() == 2)
       point.push_back((mesh.thickness > 0 ? mesh.thickness : mesh.size) / 2);
+  }
+
+  void earthquake() const {
+    const auto shakes = [](const Stage &stage) { return stage.earthquake; };
+    if (!scene_.earthquake.empty() && std::ranges::none_of(scene_.stage, shakes))
+      reader_.complain("earthquake", "has no effect: set earthquake = true in a stage of motion");
+    for (std::size_t i = 0; i < scene_.earthquake.size(); ++i) {
+      const std::vector<double> &direction = scene_.earthquake[i].direction;
+      const std::string path = "earthquake." + std::to_string(i) + ".direction";
+      if (!direction.empty()) components(path, direction.size(), scene_.dimension, "components");
+      if (!direction.empty() && std::ranges::all_of(direction, [](double one) { return one == 0; }))
+        reader_.complain(path, "must not be zero");
+    }
   }
 
   void followed_line(const OutputLine &line) const {
@@ -431,6 +445,15 @@ class Checks {
     }
     if (stage.steady && stage.kind != StageKind::seepage)
       reader_.complain(path + ".steady", "belongs to seepage: set kind = \"seepage\"");
+    if (stage.earthquake) {
+      if (is_static(stage.kind))
+        reader_.complain(path + ".earthquake", "belongs to stages of motion: set kind = \"dynamic\"");
+      if (scene_.earthquake.empty()) reader_.complain(path + ".earthquake", "needs a motion: add [[earthquake]]");
+      if (stage.damping > 0)
+        reader_.complain(
+            path + ".damping",
+            "must be 0 in an earthquake: local damping takes a share of all motion, whatever its frequency");
+    }
     if (is_static(stage.kind)) {
       const std::string no = "has no effect in a quasi-static stage; leave it out";
       if (stage.until != StopWhen::duration) reader_.complain(path + ".until", no);

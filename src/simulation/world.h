@@ -123,6 +123,7 @@ class World {
   void check_quasi_static_base(const std::string &path) const;      // world_checks.cpp
   void check_fresh_base(const std::string &path) const;             // world_checks.cpp
   void check_something_acts(const std::vector<Source> &) const;     // world_checks.cpp
+  void check_earthquake() const;                                    // world_checks.cpp
   void check_boxes() const;                                         // world_checks.cpp
   void check_one_of_two(const std::vector<Source> &) const;         // world_checks.cpp
   void check_seeded(const Body<dim> &, const std::string &) const;  // world_checks.cpp

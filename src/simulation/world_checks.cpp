@@ -57,6 +57,15 @@ void World<dim>::check_bodies() const {
   check_boxes();
 }
 
+template <int dim>
+void World<dim>::check_earthquake() const {
+  for (std::size_t k = 0; k < scene.stage.size(); ++k)
+    if (scene.stage[k].earthquake && scene.stage[k].duration < shaking.duration() * (1 - 1e-9))
+      scene.complain("stage." + std::to_string(k) + ".duration",
+                     "must not be shorter than the motion of the ground, " + rounded(shaking.duration()) +
+                         " s; earthquake.begin and end take a part of a record");
+}
+
 /// Boxes in which there is nothing.
 template <int dim>
 void World<dim>::check_boxes() const {
@@ -258,6 +267,8 @@ template void World<2>::check_bodies() const;
 template void World<3>::check_bodies() const;
 template void World<2>::check_boundaries(const std::vector<Source> &) const;
 template void World<3>::check_boundaries(const std::vector<Source> &) const;
+template void World<2>::check_earthquake() const;
+template void World<3>::check_earthquake() const;
 template void World<2>::check_seeded(const Body<2> &, const std::string &) const;
 template void World<3>::check_seeded(const Body<3> &, const std::string &) const;
 

@@ -29,6 +29,7 @@ World<dim>::World(MPI_Comm world, const Scene &of, DM plex, const std::string &m
   check_bodies();
   find_strengths();
   check_boundaries(sources);
+  check_earthquake();
   require(conditions.setup(mesh, std::move(sources)));
   check_gap_walls(*this);
   conditions.use_stand_ins(scene.stage.front().hold_loads);
