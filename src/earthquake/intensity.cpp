@@ -2,6 +2,8 @@
 
 #include <numbers>
 
+#include "earthquake/oscillator.h"
+
 namespace talus {
 namespace {
 
@@ -48,21 +50,15 @@ Intensity intensity_of(const GroundMotion &motion) {
 }
 
 double spectral_acceleration(const GroundMotion &motion, double period, double damping) {
-  const double w = 2 * std::numbers::pi / period, h = damping, dt = motion.step, wd = w * std::sqrt(1 - h * h);
-  const double e = std::exp(-h * w * dt), s = std::sin(wd * dt), c = std::cos(wd * dt);
-  const std::size_t count = motion.acceleration.size(), after = static_cast<std::size_t>(period / dt) + 1;
+  Oscillator oscillator(period, damping, motion.step);
+  const std::size_t count = motion.acceleration.size(), after = static_cast<std::size_t>(period / motion.step) + 1;
   const auto a = [&](std::size_t k) { return k < count ? motion.acceleration[k] : 0.; };
-  double u = 0, v = 0, most = 0;  // relative to the ground
+  double most = 0;
   for (std::size_t k = 0; k + 1 < count + after; ++k) {
-    // u'' + 2 h w u' + w^2 u = -(a_k + rate t): a linear part, and a vibration about it
-    const double rate = (a(k + 1) - a(k)) / dt, slope = -rate / (w * w),
-                 start = -a(k) / (w * w) + 2 * h * rate / (w * w * w);
-    const double x = u - start, y = (v - slope + h * w * x) / wd;
-    u = start + slope * dt + e * (x * c + y * s);
-    v = slope + e * ((y * wd - h * w * x) * c - (x * wd + h * w * y) * s);
-    most = std::max(most, std::abs(u));
+    oscillator.go_on(a(k), a(k + 1));
+    most = std::max(most, std::abs(oscillator.displacement()));
   }
-  return w * w * most;
+  return std::pow(2 * std::numbers::pi / period, 2) * most;
 }
 
 std::vector<double> spectral_periods() {

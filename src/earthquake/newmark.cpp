@@ -76,6 +76,15 @@ Estimate jibson_magnitude(double yield, double peak, double magnitude) {
           0.454 * ln10};
 }
 
+BrayMacedo bray_macedo(double yield_coefficient, double period, double spectral_acceleration, double magnitude) {
+  const double k = std::log(yield_coefficient), s = std::log(spectral_acceleration), T = period;
+  const bool stiff = T < 0.1;
+  const double of_period = stiff ? -4.551 - 9.690 * T : -5.894 + 3.152 * T - 0.910 * T * T;
+  const double ln = of_period + 0.607 * magnitude - 2.491 * k - 0.245 * k * k + (2.703 + 0.344 * k) * s - 0.089 * s * s;
+  const double moves = -2.48 - 2.97 * k - 0.12 * k * k - 0.72 * T * k + 1.70 * T + 2.78 * s;
+  return {{0.01 * std::exp(ln), 0.74}, std::erfc(moves / std::sqrt(2.)) / 2};
+}
+
 Estimate jibson_arias(double yield, double arias) {
   return {0.01 * std::pow(10, 2.401 * std::log10(arias) - 3.481 * std::log10(yield / gravity) - 3.230), 0.656 * ln10};
 }

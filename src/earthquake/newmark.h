@@ -23,4 +23,12 @@ Estimate jibson_ratio(double yield, double peak);
 Estimate jibson_magnitude(double yield, double peak, double magnitude);
 Estimate jibson_arias(double yield, double arias);
 
+/// Bray & Macedo (2019), J. Geotech. Geoenviron. Eng. 145, 04019106, ordinary motions of shallow crustal earthquakes:
+/// of the yield coefficient [-], the fundamental period of the sliding mass, up to 0.7 s, the spectral acceleration
+/// at 1.3 times this period [g], and the magnitude. `none`: probability that it does not move.
+struct BrayMacedo : Estimate {
+  double none = 0;
+};
+BrayMacedo bray_macedo(double yield_coefficient, double period, double spectral_acceleration, double magnitude);
+
 }  // namespace talus

@@ -1,4 +1,6 @@
 #pragma once
+#include <string>
+
 #include "base/units.h"
 #include "earthquake/ground_motion.h"
 #include "scene/required.h"

@@ -1,5 +1,6 @@
 #pragma once
 #include <numbers>
+#include <string>
 
 #include "base/units.h"
 #include "earthquake/sources/sampled.h"
