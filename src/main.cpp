@@ -94,7 +94,7 @@ int perform(int argc, char **argv, MPI_Comm failures, int rank) {
       "Print the folder of the Python module talus_results, which reads results, and exit");
   app.require_subcommand(1);
   std::map<CLI::App *, talus::Action> actions;
-  for (auto add : {talus::add_run, talus::add_solve, talus::add_mesh, talus::add_check, talus::add_soil, talus::add_record,
+  for (auto add : {talus::add_run, talus::add_solve, talus::add_mesh, talus::add_check, talus::add_soil, talus::add_record, talus::add_newmark,
                    talus::add_plot, talus::add_maps, talus::add_bench, talus::add_compare, talus::add_converge,
                    talus::add_study, talus::add_verify, talus::add_describe}) {
     const auto before = app.get_subcommands({}).size();

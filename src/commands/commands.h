@@ -27,6 +27,7 @@ Action add_mesh(CLI::App &app);
 Action add_check(CLI::App &app);
 Action add_soil(CLI::App &app);
 Action add_record(CLI::App &app);
+Action add_newmark(CLI::App &app);
 Action add_plot(CLI::App &app);
 Action add_maps(CLI::App &app);
 Action add_bench(CLI::App &app);

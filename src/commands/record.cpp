@@ -28,9 +28,7 @@ std::vector<EarthquakeSource> components_of(const RecordArguments &arguments) {
     if (scene.earthquake.empty()) scene.complain("earthquake", "is missing: the scene has no [[earthquake]]");
     return scene.earthquake;
   }
-  std::vector<std::string> keys{"earthquake.0.file=" + std::filesystem::absolute(arguments.file).string()};
-  for (const std::string &key : arguments.set) keys.push_back("earthquake.0." + key);
-  return read_components("[[earthquake]]\nkind = \"record\"\n", keys);
+  return {record_source(arguments.file, arguments.set)};
 }
 
 void write(const std::string &path, const std::string &text) {

@@ -1,5 +1,7 @@
 #include "earthquake/sources.h"
 
+#include <filesystem>
+
 #include "base/rounded.h"
 #include "earthquake/processing.h"
 #include "scene/reader.h"
@@ -24,6 +26,12 @@ GroundMotion read_motion(const EarthquakeSource &source) {
   const double factor = source.peak > 0 ? source.peak / motion.peak() : source.scale;
   for (double &a : motion.acceleration) a *= factor;
   return motion;
+}
+
+EarthquakeSource record_source(const std::string &file, const std::vector<std::string> &overrides) {
+  std::vector<std::string> keys{"earthquake.0.file=" + std::filesystem::absolute(file).string()};
+  for (const std::string &key : overrides) keys.push_back("earthquake.0." + key);
+  return read_components("[[earthquake]]\nkind = \"record\"\n", keys).front();
 }
 
 std::vector<EarthquakeSource> read_components(const std::string &text, const std::vector<std::string> &overrides) {

@@ -19,6 +19,8 @@ using MotionSource = std::variant<RecordSource, RickerSource, GaborSource, SineS
 /// Throws SceneError for a record that cannot be read or used.
 GroundMotion read_motion(const EarthquakeSource &source);
 
+/// A record by itself.
+EarthquakeSource record_source(const std::string &file, const std::vector<std::string> &overrides = {});
 /// The components of a text that has no more than [[earthquake]], with overrides. Throws SceneError.
 std::vector<EarthquakeSource> read_components(const std::string &text, const std::vector<std::string> &overrides = {});
 

@@ -84,4 +84,8 @@ bool draw_records(const std::string &dir, const std::vector<std::string> &names)
   return draw("talus_record.py", dir, names);
 }
 
+bool draw_newmark(const std::string &dir, const std::vector<std::string> &names) {
+  return draw("talus_newmark.py", dir, names);
+}
+
 }  // namespace talus
