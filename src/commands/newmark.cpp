@@ -154,7 +154,8 @@ GroundMotion times(GroundMotion motion, double factor) {
 Slid slide(const std::string &name, const GroundMotion &motion, const Yielding &slope, double magnitude) {
   constexpr double damping = 0.1;  // of the sliding mass, between small and large strain
   const double yield = slope.coefficient * gravity, period = slope.period();
-  Slid one{.name = name, .motion = motion, .intensity = intensity_of(motion)};
+  Slid one;
+  one.name = name, one.motion = motion, one.intensity = intensity_of(motion);
   const GroundMotion uphill = times(motion, -slope.direction), downhill = times(motion, slope.direction);
   one.way = sliding_block(uphill, yield), one.reversed = sliding_block(downhill, yield);
   for (const GroundMotion &of : {uphill, downhill}) {
