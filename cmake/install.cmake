@@ -55,8 +55,6 @@ install(FILES ${PROJECT_BINARY_DIR}/TalusConfig.cmake ${PROJECT_BINARY_DIR}/Talu
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 # scenes name their sections by relative paths: the layout of the source tree stays
 install(DIRECTORY docs/gallery DESTINATION ${CMAKE_INSTALL_DATADIR}/talus/docs FILES_MATCHING PATTERN "*.toml" PATTERN "*.csv" PATTERN "*.md")
-install(DIRECTORY tests/verification tests/convergence tests/validation DESTINATION ${CMAKE_INSTALL_DATADIR}/talus/tests
-  FILES_MATCHING PATTERN "*.toml" PATTERN "*.csv" PATTERN "*.msh")
 install(DIRECTORY meshes DESTINATION ${CMAKE_INSTALL_DATADIR}/talus FILES_MATCHING PATTERN "*.csv")
 install(CODE "set(talus_headers_to \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_INCLUDEDIR}/talus\")")
 install(SCRIPT cmake/install_headers.cmake)

@@ -23,14 +23,14 @@ int sides_beyond(const std::array<double, dim + 1> &n, std::array<int, dim + 1> 
 template <int dim>
 Located put_inside(const BackgroundMesh<dim> &mesh, int cell, std::array<double, dim + 1> n, Point<dim> &x) {
   constexpr double deepest = -0.5;  // beyond it a point has not met a rough face but flown through it
-  const auto farthest = std::min_element(n.begin(), n.end()) - n.begin();
+  const int farthest = static_cast<int>(std::min_element(n.begin(), n.end()) - n.begin());
   const bool closed = n[farthest] > deepest && !mesh.closed.empty() && (mesh.closed[cell] >> farthest & 1);
   double sum = 0;
   for (double &one : n) sum += one = std::max(one, 1e-9);
   x = {};
   for (int k = 0; k <= dim; ++k)
     for (int d = 0; d < dim; ++d) x[d] += n[k] / sum * mesh.position[mesh.cells[cell].node[k]][d];
-  return {.cell = cell, .outside = !closed};
+  return {.cell = cell, .left_by = closed ? -1 : farthest};
 }
 
 }  // namespace

@@ -29,12 +29,12 @@ inline std::array<double, dim + 1> barycentric(const Cell<dim> &cell, const Poin
 inline constexpr double inside_tolerance = -1e-12;
 
 /// Where a walk ended: in local `cell`; at a partition face (`partition_face` >= 0, `cell` the last local one); or
-/// against the boundary (`outside`, `cell` the boundary cell; x is then moved just inside it). Beyond a closed face
+/// outside, beyond face `left_by` of boundary cell `cell` (x is then moved just inside it). Beyond a closed face
 /// (BackgroundMesh::closed) by less than half of the cell's altitude x is moved inside as well and counts as inside.
 struct Located {
   int cell;
   int partition_face = -1;
-  bool outside = false;
+  int left_by = -1;
 };
 
 /// The walk of a point known to be outside `start`: what `walk` does when its first look fails.

@@ -8,10 +8,12 @@
 #include <optional>
 #include <set>
 #include <sstream>
+#include <tuple>
 
 #include "meshes/drawing.h"
 #include "meshes/gmsh_elements.h"
 #include "meshes/grid.h"
+#include "meshes/mesh_options.h"
 #include "meshes/section_mesh.h"
 #include "meshes/simplex.h"
 #include "meshes/terrain_mesh.h"
@@ -21,24 +23,53 @@ namespace {
 
 constexpr double most_cells = 2e7;  // Gmsh makes them on one core, in an hour and in 20 GB
 
-struct Request {
-  std::string source, file;
-  bool values = false;                ///< of a grid, instead of a mesh
-  std::string projection;             ///< as well-known text, that a grid of values must have ...
-  std::string terrain_of_projection;  ///< ... as this file has
+/// What is asked for.
+struct Job {
+  MeshRequest request;
+  std::string file;  ///< to write
   std::string format = "4.1";
-  std::vector<double> boxes;  ///< x0 y0 x1 y1 h, repeated
-  MeshOptions options;
-  // of terrain
-  TerrainOptions terrain;
-  double base = std::numeric_limits<double>::quiet_NaN();
-  std::vector<double> ellipsoid;
-  std::vector<std::string> layers;  ///< name and file, repeated
-  std::string depth_shape = "bowl";
+  std::string grid;                   ///< whose values are written, instead of a mesh
+  std::string projection;             ///< as well-known text, that this grid must have ...
+  std::string terrain_of_projection;  ///< ... as this file has
+
+  const std::string &source() const {
+    return request.mesh.section.empty() ? request.mesh.terrain.file : request.mesh.section;
+  }
 };
 
-bool is_section(const std::string &source) {
-  return std::filesystem::path(source).extension() == ".csv" || is_drawing(source);
+[[noreturn]] void complain(const std::string &text) { throw std::invalid_argument(text); }
+
+MeshOptions section_options(const MeshRequest &request) {
+  const MeshSource &mesh = request.mesh;
+  MeshOptions options{mesh.size, request.dimension, mesh.thickness, mesh.layers, mesh.cuts, {}};
+  for (const RefineBox &box : mesh.refine)
+    options.boxes.push_back({{box.from[0], box.from[1]}, {box.to[0], box.to[1]}, box.size});
+  return options;
+}
+
+Ellipsoid ellipsoid_of(const EllipsoidSource &e) {
+  const auto &[a, b, c] = std::tie(e.semi_axes[0], e.semi_axes[1], e.semi_axes[2]);
+  if (!(a > 0 && b > 0 && c > 0)) complain("--ellipsoid needs semi-axes a, b and c above 0 m");
+  if (!(e.dip >= 0 && e.dip < 90 * degree.si)) complain("--ellipsoid needs a dip from 0 to 90 degrees");
+  return {{e.centre[0], e.centre[1], e.centre[2]}, {a, b, c}, e.dip, e.dip_direction};
+}
+
+TerrainOptions terrain_options(const MeshSource &mesh) {
+  const TerrainSource &t = mesh.terrain;
+  if (t.air < 0) complain("--air must not be below 0 m");
+  if (t.outline.empty() && t.depth != 0) complain("--depth and --depth-shape belong to an --outline");
+  if (t.way.empty() && t.way_width != 0) complain("--way-width belongs to a --way");
+  TerrainOptions o;
+  o.file = t.file, o.size = mesh.size, o.far_size = t.far_size, o.halvings = mesh.halvings;
+  o.window = t.window, o.step = t.step, o.air = t.air;
+  if (!t.base.empty()) o.base = t.base[0];
+  o.slip_surface = t.slip_surface, o.outline = t.outline;
+  if (t.ellipsoid.given) o.ellipsoid = ellipsoid_of(t.ellipsoid);
+  o.depth = t.depth, o.bowl = t.depth_shape == DepthShape::bowl;
+  for (const LayerSource &layer : t.layer) o.layers.push_back({layer.name, layer.file});
+  for (const std::vector<double> &point : t.way) o.way.insert(o.way.end(), point.begin(), point.end());
+  o.way_width = t.way_width;
+  return o;
 }
 
 Section section_in(const std::string &source) {
@@ -53,8 +84,6 @@ Section section_in(const std::string &source) {
   for (const std::string &doubt : drawing.doubts) std::cout << "warning: " << doubt << "\n";
   return doubted(section_of(drawing.rows, source, true));
 }
-
-[[noreturn]] void complain(const std::string &text) { throw std::invalid_argument(text); }
 
 /// Cells of one size over an area: triangles, tetrahedra in layers, or free ones through the thickness.
 double cells_over(double area, double size, const MeshOptions &o) {
@@ -80,8 +109,7 @@ double estimated_cells(const Section &section, const MeshOptions &o) {
   return cells;
 }
 
-void check(const Request &request, const Section &section) {
-  const MeshOptions &o = request.options;
+void check(const MeshOptions &o, const Section &section) {
   const double extent = section.largest_extent();
   if (!(o.size > 0)) complain("--size must be above 0 m");
   if (o.size > extent) {
@@ -303,7 +331,8 @@ void report_terrain(const Terrain &terrain) {
   for (const std::string &doubt : terrain.doubts()) std::cout << "warning: " << doubt << "\n";
 }
 
-void check(const TerrainOptions &o, const Terrain &terrain) {
+void check(const Terrain &terrain) {
+  const TerrainOptions &o = terrain.options();
   if (!(o.size > 0)) complain("--size must be above 0 m");
   const double height = o.air + (o.base ? terrain.ground()[0] - *o.base : 0), cells_per_volume = 8.5;
   const double area = terrain.slides() ? terrain.slide_area() : terrain.width() * terrain.depth(),
@@ -316,145 +345,97 @@ void check(const TerrainOptions &o, const Terrain &terrain) {
   }
 }
 
-/// "cells of 2 m, of 0.5 m at least in boxes".
-std::string sizes(const Request &request, const std::optional<Section> &section) {
+/// "cells of 2 m, in boxes of 0.5 m".
+std::string sizes(const MeshSource &mesh, const std::optional<Section> &section) {
   std::ostringstream text;
-  text << "cells of " << (section ? request.options.size : request.terrain.size) << " m";
+  text << "cells of " << mesh.size << " m";
   if (!section) {
-    if (request.terrain.far_size > 0) text << ", and of " << request.terrain.far_size << " m far away";
+    if (mesh.terrain.far_size > 0) text << ", and of " << mesh.terrain.far_size << " m far away";
     return text.str();
   }
   std::set<double> refined;
-  for (const std::vector<RefinedBox> *boxes : {&section->boxes, &request.options.boxes})
-    for (const RefinedBox &box : *boxes) refined.insert(box.size);
+  for (const RefinedBox &box : section->boxes) refined.insert(box.size);
+  for (const RefineBox &box : mesh.refine) refined.insert(box.size);
   for (const double size : refined) text << (size == *refined.begin() ? ", in boxes of " : ", ") << size;
   if (!refined.empty()) text << " m";
   return text.str();
 }
 
-void run(const Request &request) {
-  if (request.values) {
-    const Grid grid = read_grid(request.source);
-    check_same_projection(location_of(grid), request.projection, request.terrain_of_projection);
-    for (const std::string &remark : grid.remarks) std::cout << "warning: " << remark << "\n";
-    return write_values(grid, request.file);
-  }
+void write_grid(const Job &job) {
+  const Grid grid = read_grid(job.grid);
+  check_same_projection(location_of(grid), job.projection, job.terrain_of_projection);
+  for (const std::string &remark : grid.remarks) std::cout << "warning: " << remark << "\n";
+  write_values(grid, job.file);
+}
+
+void make_mesh(const Job &job) {
+  const MeshRequest &request = job.request;
   std::optional<Section> section;
   std::optional<Terrain> terrain;
-  if (is_section(request.source))
-    check(request, section.emplace(section_in(request.source)));
+  const MeshOptions options = section_options(request);
+  if (!request.mesh.section.empty())
+    check(options, section.emplace(section_in(request.mesh.section)));
   else
-    check(request.terrain, terrain.emplace(request.terrain));
-  const bool existed = std::filesystem::exists(request.file);
-  check_writable(request.file);
+    check(terrain.emplace(terrain_options(request.mesh)));
+  const bool existed = std::filesystem::exists(job.file);
+  check_writable(job.file);
   gmsh::initialize();
   try {
-    section ? mesh_section(*section, request.options) : mesh_terrain(*terrain);
+    section ? mesh_section(*section, options) : mesh_terrain(*terrain);
     if (terrain) check_slide(*terrain);
-    gmsh::option::setNumber("Mesh.MshFileVersion", request.format == "2.2" ? 2.2 : 4.1);
-    gmsh::write(request.file);
-    std::cout << request.file << " from " << request.source << ", in " << sizes(request, section) << "\n";
-    if (request.options.dimension == 2)
+    gmsh::option::setNumber("Mesh.MshFileVersion", job.format == "2.2" ? 2.2 : 4.1);
+    gmsh::write(job.file);
+    std::cout << job.file << " from " << job.source() << ", in " << sizes(request.mesh, section) << "\n";
+    if (section && request.dimension == 2)
       report_mesh<2>();
     else
       report_mesh<3>();
     if (terrain) {
       report_terrain(*terrain);
-      std::filesystem::path origin = request.file;
+      std::filesystem::path origin = job.file;
       std::ofstream(origin.replace_extension(".origin.json")) << terrain->origin_document();
       std::cout << "origin of x and y for maps: " << origin.string() << "\n";
     }
   } catch (...) {
     gmsh::finalize();
-    if (!existed) std::filesystem::remove(request.file);
+    if (!existed) std::filesystem::remove(job.file);
     throw;
   }
   gmsh::finalize();
 }
 
-void read_terrain(const CLI::App &app, Request &request) {
-  TerrainOptions &terrain = request.terrain;
-  for (const char *option : {"--thickness", "--layers", "--cuts", "--refine"})
-    if (app.count(option)) complain(std::string(option) + " belongs to sections, and the source is terrain");
-  terrain.file = request.source, terrain.size = request.options.size, request.options.dimension = 3;
-  if (!std::isnan(request.base)) terrain.base = request.base;
-  if (terrain.air < 0) complain("--air must not be below 0 m");
-  if (terrain.outline.empty() && (terrain.depth != 0 || app.count("--depth-shape")))
-    complain("--depth and --depth-shape belong to an --outline");
-  if (terrain.way.empty() && terrain.way_width != 0) complain("--way-width belongs to a --way");
-  terrain.bowl = request.depth_shape == "bowl";
-  for (std::size_t k = 0; k + 1 < request.layers.size(); k += 2)
-    terrain.layers.push_back({request.layers[k], request.layers[k + 1]});
-  const auto &e = request.ellipsoid;
-  if (e.empty()) return;
-  constexpr double radian = 3.14159265358979323846 / 180;
-  if (!(e[3] > 0 && e[4] > 0 && e[5] > 0)) complain("--ellipsoid needs semi-axes a, b and c above 0 m");
-  if (!(e[6] >= 0 && e[6] < 90)) complain("--ellipsoid needs a dip from 0 to 90 degrees");
-  terrain.ellipsoid = Ellipsoid{{e[0], e[1], e[2]}, {e[3], e[4], e[5]}, e[6] * radian, e[7] * radian};
+std::string text_in(const std::string &file) {
+  std::ostringstream text;
+  text << std::ifstream(file).rdbuf();
+  return text.str();
 }
 
-int parse(int argc, char **argv, Request &request) {
+/// Talus itself begins with --request or --values. Returns 0, or the exit status + 1 where nothing is to be done.
+int parse(int argc, char **argv, Job &job) {
   CLI::App app(
       "Meshes a cross-section (CSV rows part,x,y, or a DXF drawing) or terrain (a grid of elevations) for "
       "Talus.",
       "talus-mesh");
-  app.add_option("SOURCE", request.source, "section: CSV or DXF; or terrain: ESRI ASCII or GeoTIFF")->required();
-  app.add_option("-o,--output", request.file, "mesh file to write")->required();
-  app.add_option("--size", request.options.size, "cell size [m]");
-  app.add_flag("--values", request.values, "write the values of a grid for Talus to read, and no mesh");
-  app.add_option("--projection", request.projection, "of --values: well-known text of the projection to compare with");
-  app.add_option("--projection-of", request.terrain_of_projection, "the file that has this projection");
-  app.add_option("--dimension", request.options.dimension, "2: triangles, 3: tetrahedra")->check(CLI::IsMember({2, 3}));
-  app.add_option("--thickness", request.options.thickness, "of a 3D slice [m]; default one cell size");
-  app.add_option("--layers", request.options.layers, "of elements over the thickness; 0: free tetrahedra; default 1");
-  app.add_option("--cuts", request.options.cuts,
-                 "z [m] that part the thickness into groups of cells ending in _1, _2, ...");
-  app.add_option("--refine", request.boxes, "x0 y0 x1 y1 h: cells of size h in a box; may be repeated")
-      ->type_size(5)
-      ->expected(-1);
-  TerrainOptions &terrain = request.terrain;
-  app.add_option("--window", terrain.window, "of terrain: west south east north [m]")->expected(4);
-  app.add_option("--step", terrain.step, "of terrain: every so many-th row and column; default 1");
-  app.add_option("--base", request.base, "of terrain: elevation of a flat base [m]; default: the ground is the base");
-  app.add_option("--air", terrain.air, "of terrain: height of the free space above the ground [m]");
-  app.add_option("--far-size", terrain.far_size, "of terrain: cell size far from the slide and the ground [m]");
-  app.add_option("--halvings", terrain.halvings,
-                 "of terrain: how often a run will halve the edges of the cells, for warnings about their size");
-  app.add_option("--slip-surface", terrain.slip_surface, "of terrain: a grid of the elevations of a slip surface");
-  app.add_option("--ellipsoid", request.ellipsoid,
-                 "of terrain: a slip surface x y z a b c dip dip_direction [m, degrees]")
-      ->expected(8);
-  app.add_option("--outline", terrain.outline,
-                 "of terrain: the outline of a slide, polygons of a Shapefile or GeoPackage");
-  app.add_option("--depth", terrain.depth, "of terrain: largest depth of the slip surface in the outline [m]");
-  app.add_option("--depth-shape", request.depth_shape, "of terrain: depth in the outline, bowl (default) or constant")
-      ->check(CLI::IsMember({"bowl", "constant"}));
-  app.add_option("--layer", request.layers, "of terrain: NAME FILE, a layer below a grid; may be repeated")
-      ->type_size(2)
-      ->expected(-1);
-  app.add_option("--way", terrain.way, "of terrain: x y of a point of the line along which the slide flows; repeated")
-      ->type_size(2)
-      ->expected(-1);
-  app.add_option("--way-width", terrain.way_width, "of terrain: width of the strip of small cells along --way [m]");
-  app.add_option("--format", request.format, "of the mesh file: 2.2 or 4.1")->check(CLI::IsMember({"2.2", "4.1"}));
+  const std::string first = argc > 1 ? argv[1] : "";
+  std::string file;
+  std::function<MeshRequest()> request = [&] { return mesh_request_in(text_in(file)); };
+  app.add_option("-o,--output", job.file, "mesh file to write")->required();
+  if (first == "--values") {
+    app.add_option("--values", job.grid, "write the values of this grid for Talus to read, and no mesh");
+    app.add_option("--projection", job.projection, "well-known text of the projection to compare with");
+    app.add_option("--projection-of", job.terrain_of_projection, "the file that has this projection");
+  } else if (first == "--request") {
+    app.add_option("--request", file, "what the mesh is made from, see meshes/mesh_request.h");
+  } else {
+    request = add_mesh_options(app);
+  }
+  app.add_option("--format", job.format, "of the mesh file: 2.2 or 4.1")->check(CLI::IsMember({"2.2", "4.1"}));
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError &error) {
-    return app.exit(error) ? 2 : -1;
+    return app.exit(error) ? 3 : 1;
   }
-  if (request.values) return 0;
-  if (!app.count("--size")) complain("--size is required");
-  if (!is_section(request.source))
-    read_terrain(app, request);
-  else
-    for (const char *option : {"--window", "--step", "--base", "--air", "--far-size", "--halvings", "--slip-surface",
-                               "--ellipsoid", "--outline", "--depth", "--layer", "--way"})
-      if (app.count(option)) complain(std::string(option) + " belongs to terrain, and the source is a section");
-  const auto &b = request.boxes;
-  for (std::size_t i = 0; i + 4 < b.size(); i += 5)
-    request.options.boxes.push_back({{std::min(b[i], b[i + 2]), std::min(b[i + 1], b[i + 3])},
-                                     {std::max(b[i], b[i + 2]), std::max(b[i + 1], b[i + 3])},
-                                     b[i + 4]});
+  if (job.grid.empty()) job.request = request();
   return 0;
 }
 
@@ -463,10 +444,10 @@ int parse(int argc, char **argv, Request &request) {
 
 /// Exit status 0: a mesh was written; 2: bad input; 1: anything else.
 int main(int argc, char **argv) {
-  talus::Request request;
+  talus::Job job;
   try {
-    if (const int status = talus::parse(argc, argv, request)) return status < 0 ? 0 : status;
-    talus::run(request);
+    if (const int status = talus::parse(argc, argv, job)) return status - 1;
+    job.grid.empty() ? talus::make_mesh(job) : talus::write_grid(job);
   } catch (const std::invalid_argument &error) {
     std::cerr << "talus-mesh: " << error.what() << "\n";
     return 2;

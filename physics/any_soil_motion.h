@@ -10,21 +10,28 @@
 #include <vector>
 
 #include "base/archive.h"
+#include "earthquake/shaking.h"
 #include "physics/boundary/conditions.h"
 #include "physics/laws/present_strength.h"
 #include "physics/motion.h"
 #include "physics/pores/pore_report.h"
 #include "physics/prescribed_pressure.h"
+#include "physics/soil_motion/step_measures.h"
 #include "physics/soil_motion/work_ledger.h"
-#include "scene/scene.h"
 #include "transfer/transfer.h"
 
 namespace talus {
+
+struct Scene;
 
 /// Loading of the soil, set by the time loop before each step and read by the motion.
 template <int dim>
 struct Loading {
   Vec<dim> gravity{};     ///< once the ramp of the stage is over [m/s2]
+  const GroundShaking *shaking = nullptr;  ///< of the ground; null: it is at rest
+  double shaken_since = 0;                 ///< time of the run at which the motion begins [s]
+  bool in_frame_of_base = false;           ///< the soil is computed in the frame of the base, which shakes whole; else
+                                           ///< the motion comes in as a wave
   double ramp = 1;        ///< of the stage: gravity and with it pore pressure grow from 0 to 1
   double time = 0;        ///< load time: the t of the scene's functions [s]
   double set_at = 0;      ///< time of the run at which ramp and load time have these values [s], and their rates:
@@ -34,6 +41,23 @@ struct Loading {
   bool pore_flow = true;  ///< pore fluids move; otherwise their pressures are prescribed
   bool softening = true;  ///< plastic strain is recorded; otherwise soil keeps the strength it has
 
+  /// Gravity, and the inertia of what is at rest on the base, per mass [m/s2].
+  Vec<dim> gravity_at(double t) const {
+    Vec<dim> total = gravity;
+    for (double &g : total) g *= ramp_at(t);
+    if (!shaking || !in_frame_of_base) return total;
+    const std::array<double, 3> base = shaking->acceleration(t - shaken_since);
+    for (int d = 0; d < dim; ++d) total[d] -= base[d];
+    return total;
+  }
+  /// Of an outcrop of the rock from which the wave comes in [m/s].
+  Vec<dim> ground_velocity_at(double t) const {
+    Vec<dim> velocity{};
+    if (!shaking || in_frame_of_base) return velocity;
+    const std::array<double, 3> ground = shaking->velocity(t - shaken_since);
+    std::copy_n(ground.begin(), dim, velocity.begin());
+    return velocity;
+  }
   double ramp_at(double t) const { return std::min(1., ramp + ramp_rate * (t - set_at)); }
   double time_at(double t) const { return time + time_rate * (t - set_at); }
 };
@@ -66,14 +90,7 @@ class AnySoilMotion : public Motion {
   virtual PetscErrorCode serialize(Archive &archive) = 0;
 
   Loading<dim> loading;
-  /// Largest displacement of a node of this rank since the last remap, over its mean edge.
-  virtual double moved() const = 0;
-  /// Smallest cell volume of this rank over its volume in the mesh.
-  virtual double smallest_volume_ratio() const = 0;
-  /// How much the critical step has shrunk with the cells of this rank since the last remap (at most 1).
-  virtual double step_ratio() const = 0;
-  /// Largest nodal speed squared of this rank; NaN when a node has no finite velocity.
-  virtual double speed_squared() const = 0;
+  virtual const StepMeasures &measures() const = 0;
   virtual bool gathered() const = 0;
   virtual const FilledGrid<dim> &grid() const = 0;
   virtual const std::vector<PointSet> &points() const = 0;

@@ -3,7 +3,7 @@
 #include <stdexcept>
 
 #include "base/phases.h"
-#include "scene/scene.h"
+#include "scene/phase_model.h"
 
 namespace talus {
 

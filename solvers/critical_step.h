@@ -8,7 +8,7 @@
 
 #include "base/room.h"
 #include "meshes/background_mesh.h"
-#include "physics/laws/laws.h"
+#include "physics/laws/law.h"
 #include "physics/pores/pore_stiffness.h"
 
 namespace talus {

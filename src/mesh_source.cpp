@@ -14,16 +14,20 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <regex>
-#include <set>
 #include <sstream>
 #include <stdexcept>
 #include <thread>
+#include <utility>
 
+#include "meshes/mesh_request.h"
+#include "scene/mesh_source.h"
 #include "scene/place_grid.h"
 #include "scene/reader.h"
+#include "scene/scene.h"
 
 extern char **environ;
 
@@ -32,13 +36,6 @@ namespace {
 
 const MeshRun no_folder{1, "cannot make a folder for temporary files; set TMPDIR to one that can be written"};
 
-std::string number(double x) {
-  std::ostringstream s;
-  s.precision(17);
-  s << x;
-  return s.str();
-}
-
 /// talus-mesh stands beside the program that runs.
 std::string talus_mesh_path() {
   const std::filesystem::path beside = std::filesystem::read_symlink("/proc/self/exe").parent_path() / "talus-mesh";
@@ -46,44 +43,49 @@ std::string talus_mesh_path() {
 }
 
 /// What talus-mesh is asked for.
-std::vector<std::string> options_of_section(const Scene &scene) {
-  const MeshSource &source = scene.mesh;
-  std::vector<std::string> arguments{"--size", number(source.size), "--dimension", std::to_string(scene.dimension)};
-  if (scene.dimension == 3) {
-    arguments.insert(arguments.end(), {"--layers", std::to_string(source.layers)});
-    if (source.thickness > 0) arguments.insert(arguments.end(), {"--thickness", number(source.thickness)});
-    for (double cut : source.cuts) arguments.insert(arguments.end(), {"--cuts", number(cut)});
-  }
-  for (const RefineBox &box : source.refine)
-    arguments.insert(arguments.end(), {"--refine", number(box.from[0]), number(box.from[1]), number(box.to[0]),
-                                       number(box.to[1]), number(box.size)});
-  return arguments;
+MeshRequest request_of(const Scene &scene) {
+  MeshRequest request{scene.dimension, *scene.mesh};
+  MeshSource &mesh = request.mesh;
+  const MeshSource usual;
+  mesh.leaving_particles = usual.leaving_particles, mesh.balance_ranks = usual.balance_ranks;  // of the run
+  if (scene.dimension == 2) mesh.thickness = usual.thickness, mesh.layers = usual.layers, mesh.cuts = usual.cuts;
+  return request;
 }
 
-std::vector<std::string> of_terrain(const Scene &scene, const std::string &file) {
-  const TerrainSource &t = scene.mesh.terrain;
-  std::vector<std::string> arguments{
-      t.file, "-o", file, "--size", number(scene.mesh.size), "--step", std::to_string(t.step)};
-  const auto add = [&](const char *option, const std::vector<double> &values) {
-    arguments.push_back(option);
-    for (const double value : values) arguments.push_back(number(value));
-  };
-  if (!t.window.empty()) add("--window", t.window);
-  if (!t.base.empty()) add("--base", t.base);
-  if (t.air > 0) add("--air", {t.air});
-  if (t.far_size > 0) add("--far-size", {t.far_size});
-  if (scene.mesh.halvings > 0) arguments.insert(arguments.end(), {"--halvings", std::to_string(scene.mesh.halvings)});
-  if (!t.slip_surface.empty()) arguments.insert(arguments.end(), {"--slip-surface", t.slip_surface});
-  if (!t.outline.empty()) arguments.insert(arguments.end(), {"--outline", t.outline});
-  if (t.depth > 0) add("--depth", {t.depth});
-  if (t.depth_shape == DepthShape::constant) arguments.insert(arguments.end(), {"--depth-shape", "constant"});
-  for (const LayerSource &layer : t.layer) arguments.insert(arguments.end(), {"--layer", layer.name, layer.file});
-  for (const std::vector<double> &point : t.way) add("--way", point);
-  if (t.way_width > 0) add("--way-width", {t.way_width});
-  if (const EllipsoidSource &e = t.ellipsoid; e.given)
-    add("--ellipsoid", {e.centre[0], e.centre[1], e.centre[2], e.semi_axes[0], e.semi_axes[1], e.semi_axes[2],
-                        e.dip / degree.si, e.dip_direction / degree.si});
-  return arguments;
+/// Runs talus-mesh with arguments.
+MeshRun start_talus_mesh(const std::vector<std::string> &arguments) {
+  const std::string program = talus_mesh_path();
+  std::vector<char *> argv{const_cast<char *>(program.c_str())};
+  for (const std::string &a : arguments) argv.push_back(const_cast<char *>(a.c_str()));
+  argv.push_back(nullptr);
+  int ends[2];
+  if (pipe(ends)) return {1, "cannot make a pipe"};
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_adddup2(&actions, ends[1], 1);
+  posix_spawn_file_actions_adddup2(&actions, ends[1], 2);
+  posix_spawn_file_actions_addclose(&actions, ends[0]);
+  posix_spawn_file_actions_addclose(&actions, ends[1]);
+  pid_t child;
+  const int error = posix_spawn(&child, program.c_str(), &actions, nullptr, argv.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  close(ends[1]);
+  if (error) {
+    close(ends[0]);
+    return {1, "cannot start " + program};
+  }
+  MeshRun run{1, ""};
+  std::array<char, 4096> block;
+  for (ssize_t n; (n = read(ends[0], block.data(), block.size())) > 0;) run.output.append(block.data(), n);
+  close(ends[0]);
+  int status;
+  waitpid(child, &status, 0);
+  run.status = WIFEXITED(status) ? WEXITSTATUS(status) : 1;
+  if (WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL) {
+    interrupted = 1;  // from outside, as this program could have been: the scene has not failed
+    run.output += "talus-mesh was killed, as the system does where memory does not suffice";
+  }
+  return run;
 }
 
 /// What talus-mesh said, without its name and the end of the line.
@@ -94,18 +96,60 @@ MeshRun plain(MeshRun run) {
   return run;
 }
 
+/// Notes which key of a scene has the place of an option of a command line: mesh.terrain.far_size for far-size.
+struct KeysOfOptions {
+  std::map<std::string, std::string> keys{};
+  std::string table_of_keys{};
+
+  void note(const char *key) {
+    std::string option = key;
+    std::ranges::replace(option, '_', '-');
+    keys[option] = table_of_keys + key;
+  }
+  void number(const char *key, double &, Unit, Range, const char *) { note(key); }
+  void integer(const char *key, int &, Range, const char *) { note(key); }
+  void path(const char *key, std::string &, const char *) { note(key); }
+  void point(const char *key, std::vector<double> &, Unit, const char *) { note(key); }
+  void points(const char *key, std::vector<std::vector<double>> &, Unit, const char *) { note(key); }
+  template <class Enum>
+  void choice(const char *key, Enum &, std::initializer_list<std::pair<const char *, std::type_identity_t<Enum>>>,
+              const char *) {
+    note(key);
+  }
+  template <class Struct>
+  void list(const char *key, std::vector<Struct> &, const char *) {
+    note(key);
+  }
+  template <class Struct>
+  void named(const char *key, std::vector<Struct> &, const char *) {
+    note(key);
+  }
+  template <class Struct>
+  void table(const char *key, Struct &value, const char *) {
+    note(key);
+    const std::string outer = table_of_keys;
+    table_of_keys += std::string(key) + ".";
+    value.fields(*this);
+    table_of_keys = outer;
+  }
+};
+
 /// With the keys of a scene in place of options of talus-mesh: mesh.size for --size.
 std::string in_keys(const std::string &text) {
+  static const std::map<std::string, std::string> key_of = [] {
+    MeshRequest request;
+    KeysOfOptions noted;
+    request.fields(noted);
+    return noted.keys;
+  }();
   static const std::regex option(
       "(^|[ (])--([a-z][a-z-]*)(?![a-z=-])");  // no part of a file's name, nor other programs' --key=value
-  static const std::set<std::string> of_sections{"size", "thickness", "layers", "cuts", "refine"};
   std::string keys;
   std::size_t end = 0;
   for (std::sregex_iterator one(text.begin(), text.end(), option), last; one != last; ++one) {
-    std::string key = one->str(2);
-    std::ranges::replace(key, '-', '_');
-    const char *table = key == "dimension" ? "" : of_sections.count(key) ? "mesh." : "mesh.terrain.";
-    keys += text.substr(end, one->position() - end) + one->str(1) + table + key;
+    const auto key = key_of.find(one->str(2));
+    if (key == key_of.end()) continue;
+    keys += text.substr(end, one->position() - end) + one->str(1) + key->second;
     end = one->position() + one->length();
   }
   return keys + text.substr(end);
@@ -113,22 +157,20 @@ std::string in_keys(const std::string &text) {
 
 /// A mesh that is kept for the next run that asks for the same, in the folder that the environment variable
 /// TALUS_KEPT_MESHES names: the many small runs of tests would spend much of their time in the start of talus-mesh. Its
-/// name is a digest of the program, of its arguments and of the contents of the section. What goes wrong with it costs
+/// name is a digest of the program, of its request and of the contents of the section. What goes wrong with it costs
 /// time only, and nothing is said of it.
 class KeptMesh {
  public:
-  KeptMesh(const std::string &section, const std::vector<std::string> &options) {
+  explicit KeptMesh(MeshRequest request) {
     const char *folder = std::getenv("TALUS_KEPT_MESHES");
     if (!folder || !*folder) return;
-    const std::filesystem::path program = talus_mesh_path();
+    const std::filesystem::path program = talus_mesh_path(), section = std::exchange(request.mesh.section, "");
     std::error_code error;
     const auto built = std::filesystem::last_write_time(program, error).time_since_epoch().count();
     std::ifstream file(section, std::ios::binary);
     if (!file || error) return;
     std::ostringstream recipe;
-    recipe << program << ' ' << built << ' ' << std::filesystem::path(section).extension();
-    for (const std::string &option : options) recipe << ' ' << option;
-    recipe << '\n' << file.rdbuf();
+    recipe << program << ' ' << built << ' ' << section.extension() << ' ' << text_of(request) << '\n' << file.rdbuf();
     std::ostringstream name;
     name << std::hex << std::hash<std::string>()(recipe.str()) << ".msh";
     path_ = std::filesystem::path(folder) / name.str();
@@ -203,11 +245,11 @@ MeshRun values_of(const std::string &file, const std::string &document, Grid &gr
   TemporaryFolder folder;
   if (!folder.make()) return no_folder;
   const std::string values = folder.path() + "/values";
-  std::vector<std::string> arguments{file, "--values", "-o", values};
+  std::vector<std::string> arguments{"--values", file, "-o", values};
   const auto text = [&](const char *key) { return value_in(document, key, std::string()); };
   if (const std::string projection = text("projection"); !projection.empty())
     arguments.insert(arguments.end(), {"--projection", projection, "--projection-of", text("terrain")});
-  MeshRun run = plain(run_talus_mesh(arguments));
+  MeshRun run = plain(start_talus_mesh(arguments));
   if (run.status) return run;
   std::ifstream in(values, std::ios::binary);
   in >> grid.columns >> grid.rows >> grid.west >> grid.south >> grid.spacing;
@@ -221,43 +263,17 @@ MeshRun values_of(const std::string &file, const std::string &document, Grid &gr
 
 }  // namespace
 
-MeshRun run_talus_mesh(const std::vector<std::string> &arguments) {
-  const std::string program = talus_mesh_path();
-  std::vector<char *> argv{const_cast<char *>(program.c_str())};
-  for (const std::string &a : arguments) argv.push_back(const_cast<char *>(a.c_str()));
-  argv.push_back(nullptr);
-  int ends[2];
-  if (pipe(ends)) return {1, "cannot make a pipe"};
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_adddup2(&actions, ends[1], 1);
-  posix_spawn_file_actions_adddup2(&actions, ends[1], 2);
-  posix_spawn_file_actions_addclose(&actions, ends[0]);
-  posix_spawn_file_actions_addclose(&actions, ends[1]);
-  pid_t child;
-  const int error = posix_spawn(&child, program.c_str(), &actions, nullptr, argv.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  close(ends[1]);
-  if (error) {
-    close(ends[0]);
-    return {1, "cannot start " + program};
-  }
-  MeshRun run{1, ""};
-  std::array<char, 4096> block;
-  for (ssize_t n; (n = read(ends[0], block.data(), block.size())) > 0;) run.output.append(block.data(), n);
-  close(ends[0]);
-  int status;
-  waitpid(child, &status, 0);
-  run.status = WIFEXITED(status) ? WEXITSTATUS(status) : 1;
-  if (WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL) {
-    interrupted = 1;  // from outside, as this program could have been: the scene has not failed
-    run.output += "talus-mesh was killed, as the system does where memory does not suffice";
-  }
-  return run;
+MeshRun run_talus_mesh(const MeshRequest &request, const std::string &file, const std::string &format) {
+  TemporaryFolder folder;
+  if (!folder.make()) return no_folder;
+  const std::string name = folder.path() + "/request.json";
+  if (!(std::ofstream(name) << text_of(request) << std::flush))
+    return {1, "cannot write " + name + "; make room in the folder for temporary files"};
+  return start_talus_mesh({"--request", name, "-o", file, "--format", format});
 }
 
 MeshFile::MeshFile(MPI_Comm comm, const Scene &scene) {
-  const MeshSource &source = scene.mesh;
+  const MeshSource &source = *scene.mesh;
   int rank;
   MPI_Comm_rank(comm, &rank);
   if (!source.file.empty()) {
@@ -303,20 +319,12 @@ void MeshFile::read_origin(const std::string &name) {
 }
 
 MeshRun MeshFile::make(const Scene &scene) {
-  const MeshSource &source = scene.mesh;
   if (!folder_.make()) return no_folder;
   path_ = folder_.path() + "/mesh.msh";
-  std::vector<std::string> arguments;
+  const MeshRequest request = request_of(scene);
   std::optional<KeptMesh> kept;
-  if (source.section.empty()) {
-    arguments = of_terrain(scene, path_);
-  } else {
-    const std::string &section = source.section;
-    arguments = options_of_section(scene);
-    if (kept.emplace(section, arguments).copy_to(path_)) return {0, ""};
-    arguments.insert(arguments.begin(), {section, "-o", path_});
-  }
-  MeshRun run = plain(run_talus_mesh(arguments));
+  if (!request.mesh.section.empty() && kept.emplace(request).copy_to(path_)) return {0, ""};
+  MeshRun run = plain(run_talus_mesh(request, path_));
   if (kept && run.status == 0 && warnings_in(run.output).empty()) kept->keep(path_);  // it has nothing to say again
   run.output = in_keys(run.output);
   return run;

@@ -7,17 +7,19 @@
 #include <vector>
 
 #include "base/temporary_folder.h"
-#include "scene/scene.h"
 #include "simulation.h"
 
 namespace talus {
 
-/// Runs talus-mesh with arguments; returns its exit status and what it printed.
+struct MeshRequest;
+
+/// Exit status of talus-mesh, and what it printed.
 struct MeshRun {
   int status;
   std::string output;
 };
-MeshRun run_talus_mesh(const std::vector<std::string> &arguments);
+/// Has talus-mesh make a mesh and write it into a file of this format.
+MeshRun run_talus_mesh(const MeshRequest &request, const std::string &file, const std::string &format = "4.1");
 
 /// The .msh file of a scene, for rank 0 to read: its own, or one made from its section or terrain that goes with this
 /// object.

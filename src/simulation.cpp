@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "mesh_source.h"
+#include "scene/scene.h"
 #include "simulation/simulation_impl.h"
 
 namespace talus {

@@ -15,10 +15,11 @@
 #include "output/events.h"
 #include "output/results.h"
 #include "physics/laws/strength_range.h"
-#include "scene/scene.h"
 #include "solvers/quasi_static/factor_of_safety.h"
 
 namespace talus {
+
+struct Scene;
 
 /// The run cannot go on: the program ends with status 1 and this text; what was written before stays.
 class RunError : public std::runtime_error {
@@ -132,8 +133,8 @@ class AnySimulation {
   virtual const HistoryTable &history() const = 0;
   virtual const std::vector<Event> &events() const = 0;
   virtual const Breakdown &breakdown() const = 0;
-  /// Factor of safety of the state that the stages have led to, all of them quasi-static, by reduction of strength;
-  /// runs them first if they have not been run. Throws RunError if the soil stands or fails at any strength.
+  /// What the last stage of kind = "factor_of_safety" has found; runs the stages first if they have not been run.
+  /// Throws RunError if the soil stands or fails at any strength.
   virtual FactorOfSafety factor_of_safety() = 0;
   /// Hands over the nodal field "velocity" [m/s] or "displacement" [m] (since the start or the last reset) of each
   /// vertex of the DMPlex, by its point number, that has soil in a cell around it on any rank; ranks that share a

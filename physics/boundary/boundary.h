@@ -34,6 +34,7 @@ class Boundary {
   int precedence = 2;             ///< of a support
   bool follows = false;           ///< of a load
   bool open_water = false;        ///< of a pressure or seepage
+  bool incoming_wave = false;     ///< of a dashpot: its other end moves as the ground in an earthquake
   bool remembers = false;         ///< of a contact: what it bears depends on how far soil has slipped on it
   std::vector<TimeSpan> changes;  ///< when the functions that the scene gives change with time
   /// Keys and numbers of components of the vectors that the scene gives as functions; each must have one per dimension.
@@ -143,6 +144,7 @@ requires(!std::same_as<Kind, Boundary>) Boundary::Boundary(Kind of)
   on_soil_2d_ = functions_of<2>(kind), on_soil_3d_ = functions_of<3>(kind);
   if constexpr (member::precedence<Kind>) precedence = Kind::precedence;
   if constexpr (member::follows<Kind>) follows = kind->follows();
+  if constexpr (member::incoming_wave<Kind>) incoming_wave = kind->incoming_wave;
   if constexpr (member::open_water<Kind>) open_water = Kind::open_water;
   if constexpr (member::friction_coefficient<Kind>)
     friction_coefficient = [kind](double x, double y, double z, double t, double slip) {

@@ -125,7 +125,8 @@ void Conditions<dim>::constrain(double t, const FilledGrid<dim> &grid, Vec<dim> 
 
 template <int dim>
 void Conditions<dim>::project(const Vec<dim> *v, Vec<dim> *force) {
-  for (const Dashpot &d : active_dashpots_) map<dim>(force[d.node]) -= d.matrix * map<dim>(v[d.node]);
+  for (const Dashpot &d : active_dashpots_)
+    map<dim>(force[d.node]) -= d.matrix * (map<dim>(v[d.node]) - map<dim>(beyond(d)));
   bases_.project(prescribed_, v, force);
   for (const ActivePrescribed &p : prescribed_.active()) p.condition->take_from(force[p.node]);
 }
@@ -147,7 +148,7 @@ void Conditions<dim>::resolve(double t, double gamma, const FilledGrid<dim> &gri
   for (const Dashpot &d : active_dashpots_) {
     const Vec<dim> before = v[d.node];
     const Square<dim> mass = pores.mass(grid, d.node), system = mass + gamma * d.matrix;
-    map<dim>(v[d.node]) = system.inverse() * (mass * map<dim>(before));
+    map<dim>(v[d.node]) = system.inverse() * (mass * map<dim>(before) + gamma * d.matrix * map<dim>(beyond(d)));
     account(d.node, d.source, difference(v[d.node], before));
   }
   bases_.resolve(t, gamma, grid, prescribed_, pores, v);

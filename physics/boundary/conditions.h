@@ -42,6 +42,8 @@ class Conditions {
   /// bases bear.
   void project(const Vec<dim> *v, Vec<dim> *force);
   using Pores = PoresInContact<dim>;
+  /// Velocity from now on at the other end of dashpots through which a wave comes in [m/s].
+  void move_ground(const Vec<dim> &velocity) { ground_velocity_ = velocity; }
   /// Applies dashpots, contact with friction and prescribed velocities, implicitly over a step gamma, and sums up the
   /// reactions.
   void resolve(double t, double gamma, const FilledGrid<dim> &grid, Vec<dim> *v, const Pores &pores = {});
@@ -71,6 +73,10 @@ class Conditions {
     int node, source;
     Square<dim> matrix;  // [kg/s]
   };
+  /// Velocity of the other end of a dashpot.
+  Vec<dim> beyond(const Dashpot &d) const {
+    return sources_[d.source].kind.incoming_wave ? ground_velocity_ : Vec<dim>{};
+  }
   struct Reaction {
     int node, source;
     Vec<dim> value;  // impulse of the last `resolve` [N s], or dead load [N]
@@ -82,6 +88,7 @@ class Conditions {
   std::vector<std::pair<int, std::vector<Facet<dim>>>> dashpots_;
   std::vector<Dashpot> active_dashpots_;
   std::vector<double> nodal_;
+  Vec<dim> ground_velocity_{};
   double resolved_step_ = 0;
   bool stand_ins_ = false;
   std::vector<Reaction> frozen_, active_frozen_, impulses_;  ///< by mesh node; by compact node; of the last `resolve`

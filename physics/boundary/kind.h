@@ -113,6 +113,11 @@ template <class Kind>
 concept dashpot = requires(const Kind &kind) {
   { kind.template dashpot<2>(std::array<double, 2>{}, Vec<2>{}) } -> std::same_as<Square<2>>;
 };
+/// `incoming_wave`: does the other end of the dashpot move as the ground in an earthquake? Without it it does not.
+template <class Kind>
+concept incoming_wave = requires(const Kind &kind) {
+  { kind.incoming_wave } -> std::convertible_to<bool>;
+};
 /// `outside(x, y, z, t, LiquidBeyond)`: pressure of the liquid beyond the face [Pa].
 template <class Kind>
 concept outside = requires(const Kind &kind) {

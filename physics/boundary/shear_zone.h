@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/units.h"
-#include "scene/scene.h"
+#include "scene/required.h"
 
 namespace talus {
 

@@ -6,6 +6,7 @@
 
 #include "base/room.h"
 #include "meshes/locate.h"
+#include "scene/body_source.h"
 
 namespace talus {
 namespace {
@@ -81,10 +82,10 @@ int SurfaceLoads<dim>::find_cancelled(const BackgroundMesh<dim> &mesh, const std
 
 template <int dim>
 void SurfaceLoads<dim>::seed(Body<dim> &body, const BackgroundMesh<dim> &mesh) const {
-  const ParticleArrays<dim> &p = body.particles();
+  ParticleArrays<dim> &p = body.particles();
   const int faces = face_count();
   if (!faces) return;
-  std::fill_n(p.surface, static_cast<size_t>(p.count) * faces, SurfacePiece<dim>{});
+  std::fill_n(p.surface.data(), static_cast<size_t>(p.count) * faces, SurfacePiece<dim>{});
   std::unordered_map<int, int> first;  // particles of a cell stand together
   for (int i = p.count - 1; i >= 0; --i) first[p.cell[i]] = i;
   const auto &displacement = body.source().displacement;
@@ -152,7 +153,7 @@ void SurfaceLoads<dim>::begin(const std::vector<std::unique_ptr<Body<dim>>> &bod
   active_.clear();
   if (!faces) return;
   for (const auto &body : bodies) {
-    const ParticleArrays<dim> &p = body->particles();
+    ParticleArrays<dim> &p = body->particles();
     for (int i = 0; i < p.count; ++i)
       for (int k = 0; k < faces; ++k) {
         SurfacePiece<dim> &piece = p.surface[i * faces + k];

@@ -2,11 +2,12 @@
 #include <string>
 #include <utility>
 
+#include "base/units.h"
 #include "physics/laws/history.h"
 #include "physics/laws/lanes.h"
 #include "physics/laws/stress.h"
 #include "scene/quantity.h"
-#include "scene/scene.h"
+#include "scene/required.h"
 
 namespace talus {
 

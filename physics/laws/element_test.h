@@ -8,9 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "physics/laws/laws.h"
+#include "physics/laws/law.h"
 #include "scene/function.h"
-#include "scene/scene.h"
 
 namespace talus {
 

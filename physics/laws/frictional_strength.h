@@ -2,10 +2,11 @@
 #include <algorithm>
 #include <string>
 
+#include "base/units.h"
 #include "physics/laws/lanes.h"
 #include "physics/laws/stress.h"
 #include "scene/quantity.h"
-#include "scene/scene.h"
+#include "scene/required.h"
 
 namespace talus {
 
@@ -88,14 +89,6 @@ struct FrictionalStrength {
     cohesion /= factor, reduce_angle(friction_angle);
     if (residual_cohesion > 0) residual_cohesion /= factor;
     if (residual_friction_angle > 0) reduce_angle(residual_friction_angle);
-    dilation_angle = std::min(dilation_angle, friction_angle);
-  }
-
-  /// The strength of a place that has these shares of c and phi, as a strength of its own.
-  void take_shares(double of_cohesion, double of_friction) {
-    cohesion *= of_cohesion, friction_angle *= of_friction;
-    if (residual_cohesion > 0) residual_cohesion *= of_cohesion;
-    if (residual_friction_angle > 0) residual_friction_angle *= of_friction;
     dilation_angle = std::min(dilation_angle, friction_angle);
   }
 

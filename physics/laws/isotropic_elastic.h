@@ -1,7 +1,7 @@
 #pragma once
 /// Linear isotropic elasticity, which every law has within its yield surface unless it brings its own.
 #include "physics/laws/stress.h"
-#include "scene/scene.h"
+#include "scene/required.h"
 
 namespace talus {
 

@@ -1,7 +1,7 @@
 #pragma once
 /// The strength that a point of a frictional soil has now, how much of it the stress takes, and what has become of it.
 /// For results, not for the particle loop: some tenths of a microsecond a point.
-#include "physics/laws/laws.h"
+#include "physics/laws/law.h"
 
 namespace talus {
 

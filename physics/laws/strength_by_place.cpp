@@ -3,22 +3,10 @@
 #include <cmath>
 #include <string_view>
 
+#include "physics/laws/laws.h"
 #include "scene/reader.h"
 
 namespace talus {
-namespace {
-
-/// Calls `use` with the strength of a frictional law.
-template <class OneLaw, class Use>
-void with_strength(OneLaw &law, Use use) {
-  std::visit(
-      [&](auto &one) {
-        if constexpr (requires { one.reads_shares; }) use(one);
-      },
-      law);
-}
-
-}  // namespace
 
 struct StrengthByPlace::Reader {
   TableReader reader;
@@ -31,18 +19,18 @@ struct StrengthByPlace::Reader {
 };
 
 StrengthByPlace::StrengthByPlace(const DeferredTable &body, const Law &law) {
-  with_strength(law, [&](auto one) {
-    if (body.reader && one.reads_shares) one.FrictionalStrength::fields(Reader{*body.reader, *this});
-  });
+  if (!body.reader || !reads_shares(law)) return;
+  FrictionalStrength strength = *frictional_strength(law);
+  strength.fields(Reader{*body.reader, *this});
 }
 
 StrengthShares StrengthByPlace::shares(const Law &law, double x, double y, double z) const {
   StrengthShares found;
-  with_strength(law, [&](const auto &one) {
-    if (cohesion_.given() && one.cohesion > 0) found.cohesion = cohesion_(x, y, z, 0) / one.cohesion;
-    if (friction_angle_.given() && one.friction_angle > 0)
-      found.friction = friction_angle_(x, y, z, 0) / one.friction_angle;
-  });
+  const FrictionalStrength *largest = frictional_strength(law);
+  if (!largest) return found;
+  if (cohesion_.given() && largest->cohesion > 0) found.cohesion = cohesion_(x, y, z, 0) / largest->cohesion;
+  if (friction_angle_.given() && largest->friction_angle > 0)
+    found.friction = friction_angle_(x, y, z, 0) / largest->friction_angle;
   return found;
 }
 
@@ -56,16 +44,14 @@ void StrengthByPlace::widen(StrengthRange &range, double x, double y, double z) 
 }
 
 StrengthRange strength_of(const Law &law) {
-  StrengthRange range;
-  with_strength(law, [&](const auto &one) {
-    range = {{one.cohesion, one.cohesion}, {one.friction_angle, one.friction_angle}};
-  });
-  return range;
+  const FrictionalStrength *one = frictional_strength(law);
+  if (!one) return {};
+  return {{one->cohesion, one->cohesion}, {one->friction_angle, one->friction_angle}};
 }
 
 std::string take_largest(Law &law, const StrengthRange &range) {
   std::string problem;
-  with_strength(law, [&](auto &one) {
+  law = with_changed_strength(law, [&](auto &one) {
     if (std::isnan(one.cohesion)) one.cohesion = range.cohesion[1];
     if (std::isnan(one.friction_angle)) one.friction_angle = range.friction_angle[1];
     problem = one.problem();

@@ -4,7 +4,7 @@
 /// to its place (`Surroundings::cohesion`, `friction`).
 #include <string>
 
-#include "physics/laws/laws.h"
+#include "physics/laws/law.h"
 #include "physics/laws/strength_range.h"
 #include "scene/function.h"
 

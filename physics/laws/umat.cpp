@@ -42,7 +42,7 @@ struct Umat::Loaded {
   Subroutine subroutine = nullptr;
   std::vector<double> statev, props;  ///< memory of the arguments
   std::vector<std::string> names;     ///< that `history` points to
-  Trouble trouble;
+  LawTrouble trouble;
   ~Loaded() {
     if (handle) dlclose(handle);
   }
@@ -94,7 +94,7 @@ std::string Umat::problem_in(int dim) const {
   return text;
 }
 
-const Umat::Trouble &Umat::trouble() const { return loaded_->trouble; }
+const LawTrouble &Umat::trouble() const { return loaded_->trouble; }
 
 void Umat::call(const Point &point) const {
   Loaded &lib = *loaded_;

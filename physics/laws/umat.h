@@ -6,6 +6,7 @@
 
 #include "physics/laws/history.h"
 #include "physics/laws/isotropic_elastic.h"
+#include "physics/laws/law.h"
 
 namespace talus {
 
@@ -65,12 +66,8 @@ struct Umat : IsotropicElastic {
   };
   void call(const Point &point) const;
 
-  /// The first thing that went wrong in a call, and the cell it was in.
-  struct Trouble {
-    std::string text;
-    int cell = -1;
-  };
-  const Trouble &trouble() const;
+  /// The first thing that went wrong in a call.
+  const LawTrouble &trouble() const;
 
  private:
   struct Loaded;

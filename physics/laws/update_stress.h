@@ -2,7 +2,7 @@
 /// The stress update of a set of points that share one law: co-rotation, elastic trial and return map, in blocks of
 /// `lanes` points so that the compiler vectorises it. Compiled once per (law, dimension); one visit of the variant per
 /// body and call.
-#include "physics/laws/laws.h"
+#include "physics/laws/law.h"
 #include "physics/laws/stress.h"
 
 namespace talus {

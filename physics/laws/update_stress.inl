@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "physics/block.h"
+#include "physics/laws/laws.h"
 #include "physics/laws/principal_tangent.h"
 #include "physics/laws/update_stress.h"
 
@@ -48,7 +49,7 @@ template <int dim, class Number, class OneLaw>
                                                               const Strain<dim, Number> &e,
                                                               typename OneLaw::History &history,
                                                               const Surroundings &around) {
-  if constexpr (requires { law.advance(s, e, history, around); })
+  if constexpr (member::advance<OneLaw, dim, Number>)
     law.advance(s, e, history, around);
   else
     law.trial(s, e, around), law.correct(s, history, around);
@@ -88,19 +89,17 @@ struct PointBlock {
 /// Calls `use` with the law, or with the simplest case of it if it offers cases (`as_case`).
 template <class Use>
 void visit_case(const Law &law, Use use) {
-  std::visit(
-      [&](const auto &one) {
-        if constexpr (requires { one.as_case(use); })
-          one.as_case(use);
-        else
-          use(one);
-      },
-      law);
+  law.visit([&](const auto &one) {
+    if constexpr (member::as_case<std::decay_t<decltype(one)>>)
+      one.as_case(use);
+    else
+      use(one);
+  });
 }
 
 /// `law` is a copy, so that no store to the arrays can change it: the compiler then takes what depends on it alone out
 /// of the loop.
-template <bool strained, int dim, class OneLaw>
+template <bool strained, int dim, UpdatesStress OneLaw>
 void correct_all(OneLaw law, const StressPoints<dim> &points) {
   constexpr int size = stress_size<dim>, memory = static_cast<int>(OneLaw::history.size());
   law.prepare();
@@ -146,7 +145,7 @@ void correct_all(OneLaw law, const StressPoints<dim> &points) {
 }
 
 /// Point by point, with the strain as the `stress_size` variables to differentiate by.
-template <int dim, class OneLaw>
+template <int dim, UpdatesStress OneLaw>
 void differentiate_all(OneLaw law, const StressPoints<dim> &points, double *tangent) {
   constexpr int size = stress_size<dim>, memory = static_cast<int>(OneLaw::history.size());
   using Number = Dual<size>;

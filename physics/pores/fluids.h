@@ -2,20 +2,17 @@
 /// The fluids in the pores, docs/theory/pores.md (1.2), (1.3). Pressures are gauge: 0 is the atmosphere's.
 #include <cmath>
 
-#include "scene/scene.h"
-
 namespace talus {
+
+struct Gas;
+struct Water;
 
 /// Pressure at which liquid that fills the pores cavitates, theory of pores (3.1): an atmosphere below the atmosphere's
 /// [Pa].
 inline constexpr double cavitation_pressure = -100e3;
 
 struct Liquid {
-  explicit Liquid(const Water &water)
-      : density(water.density),
-        bulk_modulus(water.bulk_modulus),
-        viscosity(water.viscosity),
-        exponential(water.compression == Compression::exponential) {}
+  explicit Liquid(const Water &water);
   double density;       ///< rho_l0 at zero pressure [kg/m3]
   double bulk_modulus;  ///< K_l [Pa]
   double viscosity;     ///< mu_l [Pa s]
@@ -53,7 +50,7 @@ struct Liquid {
 /// P = K (rho / rho_0 - 1): an ideal isothermal gas with K its absolute pressure at gauge 0, or a gas of any other bulk
 /// modulus.
 struct PoreGas {
-  explicit PoreGas(const Gas &gas) : density(gas.density), bulk_modulus(gas.bulk_modulus), viscosity(gas.viscosity) {}
+  explicit PoreGas(const Gas &gas);
   double density;       ///< rho_g0 at gauge pressure 0 [kg/m3]
   double bulk_modulus;  ///< K_g [Pa]
   double viscosity;     ///< mu_g [Pa s]

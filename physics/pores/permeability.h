@@ -9,7 +9,7 @@
 #include "physics/pores/permeability/gardner.h"
 #include "physics/pores/permeability/hillel.h"
 #include "physics/pores/permeability/van_genuchten_mualem.h"
-#include "scene/scene.h"
+#include "scene/permeability_change.h"
 
 namespace talus {
 

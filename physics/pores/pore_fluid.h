@@ -20,6 +20,7 @@
 #include "physics/pores/soil_pores.h"
 #include "physics/pores/storage.h"
 #include "physics/prescribed_pressure.h"
+#include "scene/scene.h"
 #include "transfer/transfer.h"
 
 namespace talus {

@@ -3,6 +3,9 @@
 #include <cmath>
 
 #include "physics/pores/pore_fluid.h"
+#include "scene/scene.h"
+#include "scene/transfer_source.h"
+#include "scene/water_source.h"
 
 namespace talus {
 
@@ -12,14 +15,14 @@ PoreFluid<dim, Phases>::PoreFluid(const BackgroundMesh<dim> &mesh, std::vector<s
     : mesh_(mesh),
       bodies_(bodies),
       scene_(scene),
-      liquid_(scene.water),
-      gas_(scene.gas),
+      liquid_(*scene.water),
+      gas_(*scene.gas),
       pressure_(scene),
-      bishop_(scene.water.stress == PoreStress::bishop),
-      smoothing_(scene.transfer.pore_smoothing == PoreSmoothing::nodal),
-      patches_(scene.transfer.locking == Locking::patches),
-      explicit_drag_(scene.water.drag == PoreDrag::at_start),
-      by_rate_(scene.water.storage == PoreStorage::rate),
+      bishop_(scene.water->stress == PoreStress::bishop),
+      smoothing_(scene.transfer->pore_smoothing == PoreSmoothing::nodal),
+      patches_(scene.transfer->locking == Locking::patches),
+      explicit_drag_(scene.water->drag == PoreDrag::at_start),
+      by_rate_(scene.water->storage == PoreStorage::rate),
       points_(bodies.size()),
       next_points_(bodies.size()),
       trial_(bodies.size()) {
@@ -27,7 +30,7 @@ PoreFluid<dim, Phases>::PoreFluid(const BackgroundMesh<dim> &mesh, std::vector<s
   const double gravity = scene.gravity_size();
   constexpr double earth = 9.81;  // [m/s2], for a hydraulic conductivity in a scene without gravity
   for (const auto &body : bodies)
-    soils_.emplace_back(body->source(), scene.water.density * (gravity > 0 ? gravity : earth), scene.water.viscosity);
+    soils_.emplace_back(body->source(), scene.water->density * (gravity > 0 ? gravity : earth), scene.water->viscosity);
   make_room(cells_, cells), make_room(nodes_, nodes), make_room(mean_, cells), make_room(reference_, cells);
   make_room(rows_, cells), make_room(head_, cells), make_room(grain_mass_, cells), make_room(nodal_head_, nodes);
   for (auto *field : {&surface_, &moment_, &gap_}) make_room(*field, nodes);
@@ -41,7 +44,7 @@ PoreFluid<dim, Phases>::PoreFluid(const BackgroundMesh<dim> &mesh, std::vector<s
   if constexpr (Phases::gas) make_room(uptake_, cells);
   for (auto *all : {&points_, &next_points_})
     for (size_t b = 0; b < bodies.size(); ++b)
-      (*all)[b].reserve(scene.transfer.average_stress ? static_cast<int>(cells) : bodies[b]->particles().count);
+      (*all)[b].reserve(scene.transfer->average_stress ? static_cast<int>(cells) : bodies[b]->particles().count);
 }
 
 // ---- first state ----
@@ -51,14 +54,14 @@ double PoreFluid<dim, Phases>::prescribed_pressure(const Vec<dim> &x, double t) 
   double p = pressure_(x, t, common_water);
   if constexpr (Phases::suction)
     if (!pressure_.below_table(x, t, common_water))
-      p -= scene_.water.suction.given() ? scene_.water.suction(x[0], x[1], dim == 3 ? x[dim - 1] : 0, t)
+      p -= scene_.water->suction.given() ? scene_.water->suction(x[0], x[1], dim == 3 ? x[dim - 1] : 0, t)
                                         : pressure_.above_table(x, t);
   return p;
 }
 
 template <int dim, class Phases>
 double PoreFluid<dim, Phases>::prescribed_gas_pressure(const Vec<dim> &x) const {
-  if constexpr (Phases::gas) return scene_.gas.pressure(x[0], x[1], dim == 3 ? x[dim - 1] : 0, 0);
+  if constexpr (Phases::gas) return scene_.gas->pressure(x[0], x[1], dim == 3 ? x[dim - 1] : 0, 0);
   return 0;
 }
 
@@ -86,8 +89,8 @@ void PoreFluid<dim, Phases>::fill(double t) {
 template <int dim, class Phases>
 void PoreFluid<dim, Phases>::fill(const std::function<double(int, const Vec<dim> &)> &liquid) {
   for (size_t b = 0; b < bodies_.size(); ++b) {
-    const ParticleArrays<dim> &p = bodies_[b]->particles();
-    const double grain_density = bodies_[b]->source().grain_density;
+    ParticleArrays<dim> &p = bodies_[b]->particles();
+    const double grain_density = bodies_[b]->grain_density();
     for (int i = 0; i < p.count; ++i) {
       const auto content =
           contents(soils_[b], liquid(p.cell[i], p.position[i]), prescribed_gas_pressure(p.position[i]));

@@ -1,5 +1,6 @@
 #include "physics/pores/soil_pores.h"
 
+#include "scene/body_source.h"
 #include "scene/reader.h"
 
 namespace talus {

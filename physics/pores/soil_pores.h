@@ -9,6 +9,8 @@
 
 namespace talus {
 
+struct BodySource;
+
 class SoilPores {
  public:
   /// Reads curves and permeabilities of a body; `liquid` turns a hydraulic conductivity into a permeability with the

@@ -6,7 +6,7 @@
 #include "base/local_numbers.h"
 #include "base/room.h"
 #include "physics/kinematics.h"
-#include "physics/laws/laws.h"
+#include "physics/laws/law.h"
 #include "transfer/mass_matrix.h"
 
 namespace talus {

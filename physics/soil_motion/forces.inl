@@ -2,62 +2,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "particles/own_acceleration.h"
 #include "physics/soil_motion.h"
+#include "scene/transfer_source.h"
 
 namespace talus {
-
-/// Forces of the stress of a state on the nodes of this rank, theory (3.6).
-template <int dim, class Phases>
-void SoilMotion<dim, Phases>::internal_force(const State &state) {
-  const int cells = grid_.cell_count();
-  const Shape<dim> *shape = state.shape;
-  const double *particle_volume = state.particle_volume.data(), *weight = state.weight.data();
-  std::fill_n(cell_stress_.begin(), cells, std::array<double, components>{});
-  for (size_t b = 0; b < bodies_.size(); ++b) {
-    const PointSet &p = points_[b];
-    const double *stress = state.stress[b], *volume = state.volume[b];
-    for (int q = 0; q < p.count; ++q) {
-      auto &sum = cell_stress_[p.cell[q]];
-      const double share = volume[q] / particle_volume[p.cell[q]];
-      for (int s = 0; s < components; ++s) sum[s] += share * stress[q * components + s];
-    }
-  }
-  if (transfer_.locking == Locking::patches) {
-    for (int c = 0; c < cells; ++c) patch_weight_[grid_.patch[c]] = patch_sum_[grid_.patch[c]] = 0;
-    for (int c = 0; c < cells; ++c) {
-      const auto &s = cell_stress_[c];
-      patch_weight_[grid_.patch[c]] += weight[c], patch_sum_[grid_.patch[c]] += weight[c] * (s[0] + s[1] + s[2]) / 3;
-    }
-    for (int c = 0; c < cells; ++c) {
-      auto &s = cell_stress_[c];
-      const double correction = patch_sum_[grid_.patch[c]] / patch_weight_[grid_.patch[c]] - (s[0] + s[1] + s[2]) / 3;
-      for (int k = 0; k < 3; ++k) s[k] += correction;
-    }
-  }
-  std::fill_n(force_.begin(), grid_.node_count(), Vec<dim>{});
-  for (int c = 0; c < cells; ++c) {
-    const auto &s = cell_stress_[c];
-    const double w = weight[c];
-    Vec<dim> first{};
-    for (int k = 0; k < dim; ++k) {
-      const Vec<dim> &g = shape[c].gradient[k];
-      Vec<dim> f;
-      if constexpr (dim == 2)
-        f = {w * (s[0] * g[0] + s[3] * g[1]), w * (s[3] * g[0] + s[1] * g[1])};
-      else
-        f = {w * (s[0] * g[0] + s[3] * g[1] + s[5] * g[2]), w * (s[3] * g[0] + s[1] * g[1] + s[4] * g[2]),
-             w * (s[5] * g[0] + s[4] * g[1] + s[2] * g[2])};
-      for (int d = 0; d < dim; ++d) force_[shape[c].node[k + 1]][d] -= f[d], first[d] += f[d];
-    }
-    for (int d = 0; d < dim; ++d) force_[shape[c].node[0]][d] += first[d];
-  }
-}
 
 /// Adds the forces of the bodies' `body_acceleration`, theory (3.5).
 template <int dim, class Phases>
 void SoilMotion<dim, Phases>::add_body_forces(double load_time) {
   for (const auto &body : bodies_) {
-    const auto &acceleration = body->source().body_acceleration;
+    const auto &acceleration = own_acceleration(body->source());
     if (acceleration.empty()) continue;
     const ParticleArrays<dim> &p = body->particles();
     for (int i = 0; i < p.count; ++i) {
@@ -77,24 +32,30 @@ template <int dim, class Phases>
 PetscErrorCode SoilMotion<dim, Phases>::total_force(double t, const State &state) {
   PetscFunctionBeginUser;
   const int nodes = grid_.node_count();
-  const double load_time = loading.time_at(t), ramp = loading.ramp_at(t);
-  internal_force(state);
+  const double load_time = loading.time_at(t);
+  stress_.find(grid_, points_, state, transfer_.locking, patches_);
+  std::fill_n(force_.begin(), nodes, Vec<dim>{});
+  for (int c = 0; c < grid_.cell_count(); ++c) {
+    const std::array<Vec<dim>, dim + 1> forces = stress_.forces(c, state);
+    for (int k = 0; k <= dim; ++k) add_scaled<dim>(force_[state.shape[c].node[k]], 1, forces[k]);
+  }
   conditions_.surface_loads().add(load_time, grid_, state.position, force_.data());
   if (work_.imposes()) {
     work_.before_imposed(force_.data(), nodes);
     add_body_forces(load_time);
     if constexpr (Phases::prescribed) {
-      if (!is_trial(state)) PetscCall(water_.advance_to(load_time, grid_, blend_.data()));
-      water_.add_force(grid_, state, load_time, ramp, force_.data());
+      if (!is_trial(state)) PetscCall(water_.advance_to(load_time, grid_, filling_.blend.data()));
+      water_.add_force(grid_, state, load_time, loading.ramp_at(t), force_.data());
     }
     work_.after_imposed(force_.data(), nodes);
   }
   PetscCall(grid_.sum(force_[0].data(), dim));
   conditions_.add_reactions(force_.data());
   const double *extra = extra_mass();
+  const Vec<dim> gravity = loading.gravity_at(t);
   for (int i = 0; i < nodes; ++i) {
     const double m = grid_.mass[i] + (extra ? extra[i] : 0);
-    for (int d = 0; d < dim; ++d) force_[i][d] += m * (ramp * loading.gravity[d]);
+    for (int d = 0; d < dim; ++d) force_[i][d] += m * gravity[d];
   }
   if constexpr (Phases::liquid) fluid_.add_to_mixture(pore_frame(t, state), pore_conditions_, force_.data());
   PetscFunctionReturn(0);

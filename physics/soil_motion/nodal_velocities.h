@@ -18,13 +18,11 @@ struct NodalVelocities {
   /// share of its own velocity, which the nodes did not receive, that a particle has once they have received the rest.
   NodalVelocities(int nodes, double relaxation_time, bool between_remaps, double kept)
       : relaxation_time(relaxation_time), relaxes(between_remaps && relaxation_time > 0), kept(kept), own_share(kept) {
-    make_room(momentum, nodes);
     for (Field *field : {&start, &now, &unmapped_start}) make_room(*field, static_cast<size_t>(nodes) * fields);
     make_room(moving, nodes);
     if constexpr (fields > 1) make_room(before_step, static_cast<size_t>(nodes) * fields);
   }
 
-  Field momentum;        ///< of the solid on this rank, [node], filled while particles are gathered [kg m/s]
   Field start;           ///< v^0, what the nodes received of the particles, which keep the rest [m/s]
   Field now;             ///< v [m/s]
   Field moving;          ///< at which the nodes of the solid move, w of docs/theory (4.9), once results need it [m/s]

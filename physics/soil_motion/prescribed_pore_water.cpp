@@ -5,7 +5,8 @@
 
 #include "base/room.h"
 #include "meshes/locate.h"
-#include "physics/laws/laws.h"
+#include "physics/laws/law.h"
+#include "scene/body_source.h"
 
 namespace talus {
 

@@ -5,6 +5,7 @@
 
 #include "base/local_numbers.h"
 #include "physics/soil_motion.h"
+#include "scene/transfer_source.h"
 
 namespace talus {
 
@@ -36,8 +37,6 @@ bool SoilMotion<dim, Phases>::find_trouble(Vec<dim> *where, std::string *cause) 
 template <int dim, class Phases>
 typename PoreFluid<dim, Phases>::Frame SoilMotion<dim, Phases>::pore_frame(double t,
                                                                            const State &state) requires Phases::liquid {
-  Vec<dim> gravity = loading.gravity;
-  for (double &g : gravity) g *= loading.ramp_at(t);
   return {.grid = grid_,
           .shape = state.shape,
           .position = state.position,
@@ -45,8 +44,8 @@ typename PoreFluid<dim, Phases>::Frame SoilMotion<dim, Phases>::pore_frame(doubl
           .points = points_,
           .volume = state.volume.data(),
           .particle_volume = state.particle_volume.data(),
-          .blend = blend_.data(),
-          .gravity = gravity,
+          .blend = filling_.blend.data(),
+          .gravity = loading.gravity_at(t),
           .time = loading.time_at(t),
           .averaged = transfer_.average_stress,
           .trial = is_trial(state)};
@@ -156,7 +155,8 @@ SofteningInput SoilMotion<dim, Phases>::softened_by(int b, int i) const {
   const PointSet &points = points_[b];
   const int q = transfer_.average_stress ? points.find(p.cell[i]) : i;
   found.plastic_strain = points.history[q * count + field];
-  if (nonlocal_[b]) found.plastic_strain += nonlocal_[b]->excess(q), found.size = 2 * body.source().averaging_length;
+  if (softening_.averages(b))
+    found.plastic_strain += softening_.excess(b, q), found.size = 2 * body.averaging_length();
   return found;
 }
 
@@ -175,29 +175,24 @@ PetscErrorCode SoilMotion<dim, Phases>::serialize(Archive &archive) {
   archive.serialize("velocities", velocities_.remap_time, velocities_.own_share);
   archive.column(grid.cells, "particle volume", accepted_.particle_volume);
   archive.column(grid.cells, "weight", accepted_.weight);
-  archive.column(grid.cells, "blend", blend_);
-  archive.column(grid.cells, "filling", filling_);
-  archive.column(grid.cells, "slenderness", slenderness_);
-  archive.column(grid.cells, "impedance", impedance_);
+  filling_.serialize(archive, grid.cells);
   std::vector<Archive::Rows> points(bodies_.size());
   for (size_t b = 0; b < bodies_.size(); ++b) {
     points[b] = serialize_points(archive, b);
-    if (nonlocal_[b]) nonlocal_[b]->serialize(archive, grid, points[b]);
+    softening_.serialize(b, archive, grid, points[b]);
   }
   accepted_.refer_to(grid_);
   archive.serialize("motion", gathered_, accepted_time_);
-  double smallest[] = {-smallest_ratio_, -step_ratio_};
-  archive.largest("least of the motion", smallest), archive.largest("motion", moved_, speed_squared_);
-  smallest_ratio_ = -smallest[0], step_ratio_ = -smallest[1];
+  measures_.serialize(archive);
   work_.serialize(archive);
   if constexpr (Phases::prescribed) water_.serialize(archive, grid);
   fastest_mode_.serialize(archive);
-  PetscCall(conditions_.serialize(archive, grid_, impedance_, filling_));
+  PetscCall(conditions_.serialize(archive, grid_, filling_.impedance, filling_.share));
   if (archive.reading()) conditions_.surface_loads().begin(bodies_, grid_);
   if constexpr (Phases::liquid) {
     fluid_.serialize(archive, grid, points);
     if (archive.reading())
-      PetscCall(pore_conditions_.begin(grid_, filling_, fluid_.surface(), fluid_.surface_moment()));
+      PetscCall(pore_conditions_.begin(grid_, filling_.share, fluid_.surface(), fluid_.surface_moment()));
   }
   PetscFunctionReturn(0);
 }
@@ -259,9 +254,10 @@ PetscErrorCode SoilMotion<dim, Phases>::balance(double t, Balance *sums) {
   add_body_forces(loading.time);
   PetscCall(grid_.sum(force_[0].data(), dim));
   conditions_.add_reactions(force_.data());
+  const Vec<dim> gravity = loading.gravity_at(loading.set_at);
   for (int i = 0; i < grid_.node_count(); ++i) {
     if (!mesh_.owned[grid_.mesh_node[i]]) continue;
-    for (int d = 0; d < dim; ++d) force_[i][d] += grid_.mass[i] * (loading.ramp * loading.gravity[d]);
+    for (int d = 0; d < dim; ++d) force_[i][d] += grid_.mass[i] * gravity[d];
     local[1] += magnitude(force_[i]);
   }
   // of the particles: nodes also carry modes that no particle feels

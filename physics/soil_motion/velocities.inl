@@ -24,6 +24,7 @@ PetscErrorCode SoilMotion<dim, Phases>::apply_boundaries_and_drag(double t, doub
   if constexpr (Phases::liquid)
     fluid_.apply_drag_to_solid(gamma, pore_frame(t, accepted_), pore_conditions_, velocity,
                                velocity + grid_.node_count());
+  conditions_.move_ground(loading.ground_velocity_at(t));
   conditions_.resolve(loading.time_at(t), gamma, grid_, velocity, contact(t, gamma));
   if constexpr (Phases::liquid)
     fluid_.apply_drag_to_fluids(gamma, pore_frame(t, accepted_), pore_conditions_, velocity,
@@ -50,6 +51,7 @@ template <int dim, class Phases>
 PetscErrorCode SoilMotion<dim, Phases>::apply_boundaries(double t, double gamma, double *v) {
   PetscFunctionBeginUser;
   Vec<dim> *velocity = reinterpret_cast<Vec<dim> *>(v);
+  conditions_.move_ground(loading.ground_velocity_at(t));
   conditions_.resolve(loading.time_at(t), gamma, grid_, velocity, contact(t, gamma));
   if constexpr (Phases::liquid)
     fluid_.constrain(pore_frame(t, accepted_), pore_conditions_, velocity, velocity + grid_.node_count());

@@ -2,15 +2,18 @@
 
 #include <algorithm>
 
+#include "scene/body_source.h"
+#include "scene/scene.h"
+#include "scene/stage.h"
+
 namespace talus {
 
 template <int dim>
 FacesInside<dim>::FacesInside(const BackgroundMesh<dim> &mesh, const Scene &scene)
     : mesh_(mesh), lasting_(mesh.cell_count(), 0) {
   for (const BodySource &body : scene.body) {
-    const bool lasts = std::ranges::none_of(scene.stage, [&](const Stage &stage) {
-      return std::ranges::count(stage.add, body.name) || std::ranges::count(stage.remove, body.name);
-    });
+    const bool lasts = std::ranges::none_of(
+        scene.stage, [&](const Stage &stage) { return stage.adds(body.name) || stage.removes(body.name); });
     for (const std::string &region : body.region)
       for (const int cell : mesh.region(region)) lasting_[cell] = lasts;
   }

@@ -5,9 +5,10 @@
 #include <vector>
 
 #include "meshes/background_mesh.h"
-#include "scene/scene.h"
 
 namespace talus {
+
+struct Scene;
 
 template <int dim>
 class FacesInside {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/quasi_static_source.h"
+
 namespace talus {
 
 namespace {

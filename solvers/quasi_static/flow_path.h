@@ -8,6 +8,8 @@
 
 namespace talus {
 
+struct QuasiStaticSource;
+
 /// What a path of flow is to do.
 struct FlowPath {
   double duration;                              ///< [s]

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/quasi_static_source.h"
 #include "solvers/quasi_static/line_search.h"
 
 namespace talus {

@@ -8,6 +8,8 @@
 
 namespace talus {
 
+struct QuasiStaticSource;
+
 template <int dim>
 class FlowStep {
  public:

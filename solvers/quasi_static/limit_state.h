@@ -52,7 +52,6 @@ class LimitState {
   /// Moves the soil along the mechanism that was found last, so far that its largest displacement is `size` [m].
   /// Collective.
   PetscErrorCode move_along(double size);
-  double elastic_displacement() const { return elastic_displacement_; }  ///< of a node at most [m]
 
  private:
   bool stop_asked() const { return problem_.stop_asked && problem_.stop_asked(); }
@@ -62,11 +61,12 @@ class LimitState {
   PetscErrorCode line_search(double slope, double *step);
 
   QuasiStatic<dim> &problem_;
-  double load_time_ = 0, time_ = 0, elastic_displacement_ = 0;
-  double prop_ = 0;        ///< alpha: stiffness of the prop over the elastic stiffness [-]
-  double residual_ = 0;    ///< size of the out-of-balance force of the propped soil [N]
-  double prop_force_ = 0;  ///< size of the force of the prop [N]
-  Matrix elastic_;         ///< elastic stiffness
+  double load_time_ = 0, time_ = 0;
+  double elastic_displacement_ = 0;  ///< of a node at most [m]
+  double prop_ = 0;                  ///< alpha: stiffness of the prop over the elastic stiffness [-]
+  double residual_ = 0;              ///< size of the out-of-balance force of the propped soil [N]
+  double prop_force_ = 0;            ///< size of the force of the prop [N]
+  Matrix elastic_;                   ///< elastic stiffness
   Vector x_, trial_, direction_, force_, of_prop_, start_, mechanism_;
 };
 

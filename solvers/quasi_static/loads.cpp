@@ -4,6 +4,8 @@
 
 #include "physics/boundary/pore_conditions.h"
 #include "physics/prescribed_pressure.h"
+#include "scene/body_source.h"
+#include "scene/scene.h"
 #include "solvers/quasi_static/unnamed_faces.h"
 
 namespace talus {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "physics/boundary/conditions.h"
+#include "scene/scene.h"
 #include "solvers/quasi_static/soil_elements.h"
 
 namespace talus {

@@ -6,6 +6,9 @@
 #include <utility>
 
 #include "base/local_numbers.h"
+#include "scene/body_source.h"
+#include "scene/scene.h"
+#include "scene/water_source.h"
 #include "solvers/quasi_static/faces_inside.h"
 #include "solvers/quasi_static/unnamed_faces.h"
 
@@ -26,6 +29,15 @@ constexpr double far_gauss = dim == 2 ? 0.21132486540518713 : 1. / 6;
 }  // namespace
 
 template <int dim>
+std::vector<int> bodies_of_cells(const BackgroundMesh<dim> &mesh, const Scene &scene) {
+  std::vector<int> body(mesh.cell_count(), -1);
+  for (size_t b = 0; b < scene.body.size(); ++b)
+    for (const std::string &region : scene.body[b].region)
+      for (int cell : mesh.region(region)) body[cell] = static_cast<int>(b);
+  return body;
+}
+
+template <int dim>
 PoreFlow<dim>::PoreFlow(const BackgroundMesh<dim> &mesh, const Scene &scene, const std::vector<Source> &sources,
                         bool suction, const std::vector<Source> &more)
     : mesh_(mesh),
@@ -34,13 +46,13 @@ PoreFlow<dim>::PoreFlow(const BackgroundMesh<dim> &mesh, const Scene &scene, con
       shared_sources_(sources.size()),
       body_of_(bodies_of_cells(mesh, scene)),
       suction_(suction),
-      bishop_(scene.water.stress == PoreStress::bishop),
-      liquid_(scene.water) {
+      bishop_(scene.water->stress == PoreStress::bishop),
+      liquid_(*scene.water) {
   double square = 0;
   for (int d = 0; d < dim; ++d)
     gravity_[d] = scene.gravity[d], upward_[d] = scene.upward()[d], square += gravity_[d] * gravity_[d];
   for (const BodySource &body : scene.body)
-    soils_.emplace_back(body, scene.water.density * (square > 0 ? std::sqrt(square) : earth), scene.water.viscosity);
+    soils_.emplace_back(body, scene.water->density * (square > 0 ? std::sqrt(square) : earth), scene.water->viscosity);
   mean_permeability_.resize(soils_.size());
   for (int b = 0; b < static_cast<int>(soils_.size()); ++b)
     if (has_curve(b)) mean_permeability_[b].emplace(soils_[b]);
@@ -495,6 +507,13 @@ double PoreFlow<dim>::water_density(int cell, const Barycentric<dim> &l) const {
   return soils_[body_of_[cell]].porosity() * saturation_of(body_of_[cell], p) * liquid_.density_at(p);
 }
 
+template <int dim>
+bool PoreFlow<dim>::has_curve(int body) const {
+  return suction_ && scene_.body[body].retention.reader;
+}
+
+template std::vector<int> bodies_of_cells(const BackgroundMesh<2> &, const Scene &);
+template std::vector<int> bodies_of_cells(const BackgroundMesh<3> &, const Scene &);
 template class PoreFlow<2>;
 template class PoreFlow<3>;
 

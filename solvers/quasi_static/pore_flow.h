@@ -16,6 +16,8 @@
 
 namespace talus {
 
+struct Scene;
+
 /// The values at a node that the step control looks at: the pressure in the total stress [Pa], and the saturation.
 struct FlowMeasure {
   double pressure, saturation;
@@ -23,13 +25,7 @@ struct FlowMeasure {
 
 /// The body of each cell by its place in the scene, -1 for none.
 template <int dim>
-std::vector<int> bodies_of_cells(const BackgroundMesh<dim> &mesh, const Scene &scene) {
-  std::vector<int> body(mesh.cell_count(), -1);
-  for (size_t b = 0; b < scene.body.size(); ++b)
-    for (const std::string &region : scene.body[b].region)
-      for (int cell : mesh.region(region)) body[cell] = static_cast<int>(b);
-  return body;
-}
+std::vector<int> bodies_of_cells(const BackgroundMesh<dim> &mesh, const Scene &scene);
 
 /// The water balance of local nodes: its residual, and the size of the terms that must cancel.
 struct WaterBalance {
@@ -137,7 +133,7 @@ class PoreFlow {
   double out_of_layer(int node) const { return layers_.passes(node) * (pressure[node] - beyond_[node]); }
   double outside(int node, double t) const;
   double outside(int source, const Vec<dim> &x, double t) const;
-  bool has_curve(int body) const { return suction_ && scene_.body[body].retention.reader; }
+  bool has_curve(int body) const;
 
   const BackgroundMesh<dim> &mesh_;
   const Scene &scene_;

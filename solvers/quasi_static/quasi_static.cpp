@@ -5,6 +5,8 @@
 #include <utility>
 
 #include "base/local_numbers.h"
+#include "scene/quasi_static_source.h"
+#include "scene/scene.h"
 #include "solvers/quasi_static/line_search.h"
 
 namespace talus {
@@ -39,7 +41,7 @@ PetscErrorCode QuasiStatic<dim>::make_solver(SNESLineSearchType line_search) {
   KSP ksp;
   PC pc;
   constexpr long long largest_direct = dim == 2 ? 400000 : 40000;  // unknowns
-  const QuasiStaticSource &settings = scene_.quasi_static;
+  const QuasiStaticSource &settings = *scene_.quasi_static;
   PetscFunctionBeginUser;
   direct_ = settings.linear_solver == LinearSolver::direct ||
             (settings.linear_solver == LinearSolver::automatic && unknowns() <= largest_direct);
@@ -126,7 +128,7 @@ PetscErrorCode QuasiStatic<dim>::snes_converged(SNES, PetscInt iteration, PetscR
   PetscFunctionBeginUser;
   QuasiStatic &problem = *static_cast<QuasiStatic *>(context);
   *reason = SNES_CONVERGED_ITERATING;
-  problem.balanced_ = norm <= problem.scene_.quasi_static.tolerance * problem.force_scale_;
+  problem.balanced_ = norm <= problem.scene_.quasi_static->tolerance * problem.force_scale_;
   if (iteration == 0) problem.scale_open_ = false;  // an iterate that goes astray must not widen what counts as small
   if (problem.iterated && problem.force_scale_ > 0) problem.iterated(iteration, norm / problem.force_scale_);
   if (!std::isfinite(norm))

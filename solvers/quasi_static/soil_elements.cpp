@@ -8,6 +8,9 @@
 
 #include "base/local_numbers.h"
 #include "physics/laws/strength_by_place.h"
+#include "scene/body_source.h"
+#include "scene/quasi_static_source.h"
+#include "scene/scene.h"
 
 namespace talus {
 namespace {

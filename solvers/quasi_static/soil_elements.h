@@ -8,16 +8,18 @@
 
 #include "base/archive.h"
 #include "physics/laws/update_stress.h"
-#include "scene/scene.h"
 #include "solvers/quasi_static/element_nodes.h"
 #include "solvers/quasi_static/pore_flow.h"
 
 namespace talus {
 
+struct BodySource;
+enum class Elements;
+
 /// What the problem takes from the rest of the program.
 template <int dim>
 struct SoilData {
-  Elements elements = Elements::quadratic;
+  Elements elements{};
   /// Total density of a body at a place and time of the loads [kg/m3].
   std::function<double(const BodySource &, const Vec<dim> &, double)> density;
   /// Pore pressure at a place and time of the loads, of a body or of the common water [Pa]; empty where the scene has

@@ -6,6 +6,8 @@
 #include <string>
 #include <utility>
 
+#include "scene/quasi_static_source.h"
+#include "scene/scene.h"
 #include "solvers/quasi_static/quasi_static.h"
 
 namespace talus {
@@ -46,7 +48,7 @@ PetscErrorCode QuasiStatic<dim>::relax(int *iterations, double *unbalanced, Way 
   double norm, after, first_norm, step, share;
   bool solved;
   PetscFunctionBeginUser;
-  const int most = 2 * scene_.quasi_static.iterations;
+  const int most = 2 * scene_.quasi_static->iterations;
   *way = Way::lost;
   PetscCall(VecDuplicate(x_, direction.create()));
   PetscCall(VecDuplicate(x_, last.create()));
@@ -67,7 +69,7 @@ PetscErrorCode QuasiStatic<dim>::relax(int *iterations, double *unbalanced, Way 
   } mark{0, 0};
   for (int k = 0;; ++k) {
     *iterations = k, *unbalanced = force_scale_ > 0 ? norm / force_scale_ : norm;
-    balanced_ = norm <= scene_.quasi_static.tolerance * force_scale_;
+    balanced_ = norm <= scene_.quasi_static->tolerance * force_scale_;
     if (iterated && force_scale_ > 0) iterated(k, *unbalanced);
     if (balanced_) *way = Way::balanced;
     if (balanced_ || k == most || !std::isfinite(norm)) break;

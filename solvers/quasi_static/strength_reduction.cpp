@@ -11,15 +11,6 @@
 
 namespace talus {
 
-Law without_softening(const Law &law) {
-  return std::visit(
-      [](auto one) -> Law {
-        if constexpr (requires { one.shape_factor; }) one.shape_factor = 0;
-        return one;
-      },
-      law);
-}
-
 PetscErrorCode follow_path(double step, double smallest,
                            const std::function<PetscErrorCode(double, double, StepOutcome *)> &advance,
                            const std::function<PetscErrorCode(StepOutcome *)> &find_failure,

@@ -9,9 +9,6 @@
 
 namespace talus {
 
-/// The law at its peak strength for good: for stages whose soil does not soften.
-Law without_softening(const Law &law);
-
 /// Carries a path from share 0 to 1 in load steps of at most `step`, halved where they fail and doubled after quick
 /// ones; `done` is told of each. `find_failure`, where it is given, is asked once, after the second step that failed:
 /// the path ends if it finds that the soil fails. Returns the outcome of the last step and, in `share`, how far it

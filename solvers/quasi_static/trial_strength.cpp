@@ -3,29 +3,18 @@
 #include <algorithm>
 #include <cmath>
 
+#include "physics/laws/laws.h"
 #include "solvers/quasi_static/undrained_strength.h"
 
 namespace talus {
 namespace {
 
-/// Calls visit(law) with the law if it has cohesion and friction.
-template <class AnyLaw, class Visit>
-void if_frictional(AnyLaw &law, const Visit &visit) {
-  std::visit(
-      [&](auto &one) {
-        if constexpr (requires { one.friction_angle; }) visit(one);
-      },
-      law);
-}
-
 /// With the tensile strength and what suction adds to c divided by `factor`, the latter also times what Davis's
 /// strength leaves of it; c and phi come from the shares of the points. `psi` is that of the soil's own flow [rad].
 Law law_of_trial(const Law &law, double psi, double factor, TrialFlow flow) {
-  Law trial = with_reduced_strength(law, factor);
-  if_frictional(trial, [&](auto &one) {
-    using OneLaw = std::decay_t<decltype(one)>;
-    const OneLaw &own = std::get<OneLaw>(law);
-    if constexpr (requires { one.suction_cohesion; }) {
+  return with_changed_strength(with_reduced_strength(law, factor), [&](auto &one) {
+    const auto &own = *law.as<std::decay_t<decltype(one)>>();
+    if constexpr (std::derived_from<std::decay_t<decltype(one)>, MohrCoulomb>) {
       const FrictionalPoint peak{1, own.friction_angle, own.dilation_angle};
       one.suction_cohesion = own.suction_cohesion * strength_of_trial(peak, factor, flow).c;
     }
@@ -33,15 +22,13 @@ Law law_of_trial(const Law &law, double psi, double factor, TrialFlow flow) {
     one.dilation_angle = flow == TrialFlow::own ? psi : FrictionalStrength::right_angle;  // but never above phi
     one.residual_cohesion = one.residual_friction_angle = one.residual_dilation_angle = -1, one.shape_factor = 0;
   });
-  return trial;
 }
 
 }  // namespace
 
 bool non_associated(const Law &law) {
-  bool found = false;
-  if_frictional(law, [&](const auto &one) { found = one.dilation_angle < one.friction_angle; });
-  return found;
+  const FrictionalStrength *strength = frictional_strength(law);
+  return strength && strength->dilation_angle < strength->friction_angle;
 }
 
 FrictionalPoint strength_of_trial(const FrictionalPoint &own, double factor, TrialFlow flow) {
@@ -63,20 +50,20 @@ TrialStrength<dim>::TrialStrength(SoilElements<dim> &soil, BaseContact<dim> &bas
     OfBody &body = bodies_.emplace_back();
     body.law = p.law, body.cohesion_share = p.cohesion_share, body.friction_share = p.friction_share;
     body.divisor.assign(p.count(), 0);
-    if_frictional(laws[b], [&](auto law) {
-      law.prepare();
-      const int field = plastic_strain_field(laws[b]), size = history_size(laws[b]);
-      double volume = 0;
-      for (int q = 0; q < p.count(); ++q) {
-        Surroundings around{p.size[q]};
-        if (!p.cohesion_share.empty()) around.cohesion = p.cohesion_share[q];
-        if (!p.friction_share.empty()) around.friction = p.friction_share[q];
-        const auto now = law.template faded<true>(p.history[q * size + field], around);
-        body.own.push_back({now.c, now.phi, std::asin(std::min(now.sin_psi, std::sin(now.phi)))});
-        volume += p.volume[q], body.psi += p.volume[q] * body.own.back().psi;
-      }
-      if (volume > 0) body.psi /= volume;
-    });
+    if (!frictional_strength(laws[b])) continue;
+    FrictionalStrength strength = *frictional_strength(laws[b]);
+    strength.prepare();
+    const int field = plastic_strain_field(laws[b]), size = history_size(laws[b]);
+    double volume = 0;
+    for (int q = 0; q < p.count(); ++q) {
+      Surroundings around{p.size[q]};
+      if (!p.cohesion_share.empty()) around.cohesion = p.cohesion_share[q];
+      if (!p.friction_share.empty()) around.friction = p.friction_share[q];
+      const auto now = strength.present(p.history[q * size + field], around);
+      body.own.push_back({now.c, now.phi, std::asin(std::min(now.sin_psi, std::sin(now.phi)))});
+      volume += p.volume[q], body.psi += p.volume[q] * body.own.back().psi;
+    }
+    if (volume > 0) body.psi /= volume;
   }
 }
 
@@ -144,14 +131,14 @@ void TrialStrength<dim>::set(double factor, TrialFlow flow) {
       continue;
     }
     p.law = law_of_trial(laws_[b], body.psi, body.kept ? 1 : factor, flow);
-    if_frictional(laws_[b], [&](const auto &law) {
-      const auto share = [](double part, double whole) { return whole > 0 ? part / whole : 1; };
-      p.cohesion_share.resize(p.count()), p.friction_share.resize(p.count());
-      for (int q = 0; q < p.count(); ++q) {
-        const FrictionalPoint now = strength_of_trial(body.own[q], divisor(q), flow);
-        p.cohesion_share[q] = share(now.c, law.cohesion), p.friction_share[q] = share(now.phi, law.friction_angle);
-      }
-    });
+    const FrictionalStrength *whole = frictional_strength(laws_[b]);
+    if (!whole) continue;
+    const auto share = [](double part, double of) { return of > 0 ? part / of : 1; };
+    p.cohesion_share.resize(p.count()), p.friction_share.resize(p.count());
+    for (int q = 0; q < p.count(); ++q) {
+      const FrictionalPoint now = strength_of_trial(body.own[q], divisor(q), flow);
+      p.cohesion_share[q] = share(now.c, whole->cohesion), p.friction_share[q] = share(now.phi, whole->friction_angle);
+    }
   }
 }
 

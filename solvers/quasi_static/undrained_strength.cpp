@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "physics/laws/laws.h"
 #include "solvers/quasi_static/limit_state.h"
 
 namespace talus {
@@ -40,7 +41,7 @@ std::vector<std::vector<FrictionalPoint>> undrained_strength(const SoilElements<
   for (size_t b = 0; b < laws.size(); ++b) {
     const GaussPoints<dim> &p = soil.points()[b];
     const auto find = [&](auto law) {
-      if constexpr (requires { law.friction_angle; }) {
+      if constexpr (FrictionalLaw<decltype(law)>) {
         law.prepare();
         const int field = plastic_strain_field(laws[b]), size = history_size(laws[b]);
         for (int q = 0; q < p.count(); ++q) {
@@ -58,29 +59,27 @@ std::vector<std::vector<FrictionalPoint>> undrained_strength(const SoilElements<
         }
       }
     };
-    std::visit(find, laws[b]);
+    laws[b].visit(find);
   }
   return all;
 }
 
 template <int dim>
 void put_strength(const std::vector<FrictionalPoint> &strength, GaussPoints<dim> &points) {
-  std::visit(
-      [&](auto &law) {
-        if constexpr (requires { law.friction_angle; }) {
-          law.cohesion = 1, law.friction_angle = FrictionalStrength::right_angle / 2, law.reads_shares = true;
-          law.residual_cohesion = law.residual_friction_angle = law.residual_dilation_angle = -1, law.shape_factor = 0;
-          if constexpr (requires { law.tension_cutoff; })
-            law.tension_cutoff = -1, law.suction_cohesion = law.suction_cohesion_rate = law.suction_friction_rate = 0;
-          law.dilation_angle = FrictionalStrength::right_angle;  // that is phi, which it cannot exceed
-          points.cohesion_share.clear(), points.friction_share.clear();
-          for (const FrictionalPoint &one : strength) {
-            points.cohesion_share.push_back(one.c / law.cohesion);
-            points.friction_share.push_back(one.phi / law.friction_angle);
-          }
-        }
-      },
-      points.law);
+  if (!frictional_strength(points.law)) return;
+  constexpr double c = 1, phi = FrictionalStrength::right_angle / 2;
+  points.law = with_changed_strength(points.law, [](auto &law) {
+    law.cohesion = c, law.friction_angle = phi, law.reads_shares = true;
+    law.residual_cohesion = law.residual_friction_angle = law.residual_dilation_angle = -1, law.shape_factor = 0;
+    if constexpr (std::derived_from<std::decay_t<decltype(law)>, MohrCoulomb>)
+      law.tension_cutoff = -1, law.suction_cohesion = law.suction_cohesion_rate = law.suction_friction_rate = 0;
+    law.dilation_angle = FrictionalStrength::right_angle;  // that is phi, which it cannot exceed
+  });
+  points.cohesion_share.clear(), points.friction_share.clear();
+  for (const FrictionalPoint &one : strength) {
+    points.cohesion_share.push_back(one.c / c);
+    points.friction_share.push_back(one.phi / phi);
+  }
 }
 
 template <int dim>

@@ -52,29 +52,4 @@ class Communicator {
   MPI_Comm comm_ = MPI_COMM_NULL;
 };
 
-/// Borrows a swarm field as an array of T, one per local particle; given back at scope exit.
-template <class T>
-class Field {
- public:
-  Field() = default;
-  Field(const Field &) = delete;
-  Field &operator=(const Field &) = delete;
-  ~Field() {
-    if (data_) (void)DMSwarmRestoreField(swarm_, name_, nullptr, nullptr, reinterpret_cast<void **>(&data_));
-  }
-  PetscErrorCode borrow(DM swarm, const char *name) {
-    PetscFunctionBeginUser;
-    swarm_ = swarm, name_ = name;
-    PetscCall(DMSwarmGetField(swarm, name, nullptr, nullptr, reinterpret_cast<void **>(&data_)));
-    PetscFunctionReturn(0);
-  }
-  T *data() const { return data_; }
-  T &operator[](PetscInt p) const { return data_[p]; }
-
- private:
-  DM swarm_ = nullptr;
-  const char *name_ = nullptr;
-  T *data_ = nullptr;
-};
-
 }  // namespace talus

@@ -16,6 +16,7 @@ struct Unit {
 inline constexpr Unit one{"-", 1, {}};
 inline constexpr Unit metre{"m", 1, {0, 1, 0, 0}};
 inline constexpr Unit second{"s", 1, {0, 0, 1, 0}};
+inline constexpr Unit hertz{"Hz", 1, {0, 0, -1, 0}};
 inline constexpr Unit pascal{"Pa", 1, {1, -1, -2, 0}};
 inline constexpr Unit degree{"deg", 3.14159265358979323846 / 180, {0, 0, 0, 1}};
 inline constexpr Unit metre_per_second{"m/s", 1, {0, 1, -1, 0}};

@@ -11,6 +11,7 @@
 #include "commands/commands.h"
 #include "commands/gallery.h"
 #include "scene/reader.h"
+#include "scene/scene.h"
 #include "simulation.h"
 
 namespace talus {

@@ -13,7 +13,10 @@
 #include "doubts/needs.h"
 #include "doubts/scales.h"
 #include "output/pictures.h"
+#include "scene/mesh_source.h"
 #include "scene/reader.h"
+#include "scene/scene.h"
+#include "scene/stage.h"
 
 namespace talus {
 namespace {
@@ -66,28 +69,11 @@ std::string place(const std::array<double, 3> &x, int dimension) {
   return text;
 }
 
+/// What ends a stage, in words.
 const char *ending_of(const Stage &stage) {
-  switch (stage.kind) {
-    case StageKind::quasi_static:
-      return "equilibrium by finite elements";
-    case StageKind::seepage:
-      return "seepage by finite elements";
-    case StageKind::consolidation:
-      return "consolidation by finite elements";
-    case StageKind::dynamic:
-      break;
-  }
-  switch (stage.until) {
-    case StopWhen::duration:
-      return "duration";
-    case StopWhen::equilibrium:
-      return "equilibrium";
-    case StopWhen::rest:
-      return "rest";
-    case StopWhen::failure:
-      return "failure";
-  }
-  return "";
+  if (const DynamicKeys *motion = stage.motion())
+    return std::visit([](const auto &kind) { return kind.name; }, motion->until);
+  return stage.traits().end;
 }
 
 std::string source_of(const MeshSource &mesh) {
@@ -103,7 +89,7 @@ std::string source_of(const MeshSource &mesh) {
 
 void print_costs(const Scene &scene, const Needs &n) {
   const char *per = scene.dimension == 2 ? "kg/m" : "kg";
-  line("mesh", "%lld cells, %lld nodes: %s", n.mesh.cells, n.mesh.nodes, source_of(scene.mesh).c_str());
+  line("mesh", "%lld cells, %lld nodes: %s", n.mesh.cells, n.mesh.nodes, source_of(*scene.mesh).c_str());
   line("", "quality %.2f at least, %.2f on average; smallest altitude %.3g m", n.mesh.smallest_quality,
        n.mesh.mean_quality, n.mesh.smallest_altitude);
   line("bodies", "%-16s %-14s %10s %8s %5s %10s %8s %8s %12s", "", "law", "particles", "cells", "each", per, "c_p m/s",
@@ -141,7 +127,7 @@ void print_costs(const Scene &scene, const Needs &n) {
   line("stages", "%-16s %-12s %10s %10s %14s %12s", "", "until", "longest s", "steps", "wave transits", "run time");
   for (std::size_t i = 0; i < n.stages.size(); ++i) {
     const StageNeeds &s = n.stages[i];
-    if (is_static(scene.stage[i].kind)) {
+    if (scene.stage[i].is_static()) {
       line("", "%-16s %s", s.name.c_str(), ending_of(scene.stage[i]));
       continue;
     }
@@ -160,7 +146,7 @@ void print_costs(const Scene &scene, const Needs &n) {
          "%s with a remap, which fast soil has in each step; the mesh, files and pictures come on top%s",
          spoken(n.run_time()).c_str(), spoken(n.longest_run_time()).c_str(), n.ranks, n.ranks > 1 ? "s" : "",
          n.burst_steps, spoken(n.seconds_per_step).c_str(), spoken(n.seconds_per_remap).c_str(),
-         std::ranges::any_of(scene.stage, [](const Stage &s) { return is_static(s.kind); })
+         std::ranges::any_of(scene.stage, [](const Stage &s) { return s.is_static(); })
              ? ", and stages by finite elements, which may take longer than the motion"
              : "");
 }

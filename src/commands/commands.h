@@ -26,13 +26,14 @@ Action add_solve(CLI::App &app);
 Action add_mesh(CLI::App &app);
 Action add_check(CLI::App &app);
 Action add_soil(CLI::App &app);
+Action add_record(CLI::App &app);
+Action add_newmark(CLI::App &app);
 Action add_plot(CLI::App &app);
 Action add_maps(CLI::App &app);
 Action add_bench(CLI::App &app);
 Action add_compare(CLI::App &app);
 Action add_converge(CLI::App &app);
 Action add_study(CLI::App &app);
-Action add_verify(CLI::App &app);
 Action add_describe(CLI::App &app);
 
 }  // namespace talus

@@ -5,6 +5,7 @@
 #include "commands/gallery.h"
 #include "commands/sweep.h"
 #include "scene/quantity.h"
+#include "scene/scene.h"
 
 namespace talus {
 namespace {

@@ -4,8 +4,11 @@
 
 #include "commands/gallery.h"
 #include "commands/sweep.h"
+#include "scene/body_source.h"
+#include "scene/mesh_source.h"
 #include "scene/quantity.h"
 #include "scene/reader.h"
+#include "scene/scene.h"
 #include "scene/words.h"
 #include "simulation/softening.h"
 #include "solvers/integrators.h"
@@ -27,7 +30,7 @@ struct Refinement {
 };
 
 Refinement cells_of(const Scene &scene) {
-  const MeshSource &mesh = scene.mesh;
+  const MeshSource &mesh = *scene.mesh;
   if (mesh.section.empty())
     throw SceneError(
         "converge --by cells needs a scene with mesh.section, whose cells it can make anew; the mesh file " +

@@ -1,12 +1,14 @@
 #include "commands/foreign_code.h"
 
 #include "physics/laws/laws.h"
+#include "scene/body_source.h"
 #include "scene/reader.h"
+#include "scene/scene.h"
 
 namespace talus {
 
 std::vector<std::string> bodies_with_umat(const Scene &scene) {
-  const std::vector<std::string> laws = kinds_of<Law>();
+  const std::vector<std::string> laws = kinds_of<Laws>();
   std::vector<std::string> bodies;
   for (const BodySource &body : scene.body) {
     if (!body.law.reader) continue;

@@ -9,6 +9,7 @@
 
 #include "base/archive.h"
 #include "scene/reader.h"
+#include "scene/scene.h"
 
 namespace talus {
 namespace {

@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "physics/phase_models.h"
+#include "scene/boundary_source.h"
+#include "scene/output_source.h"
 #include "scene/scene.h"
 #include "simulation/output_fields.h"
 
@@ -17,7 +19,7 @@ std::vector<std::string> possible_columns(const Scene &scene) {
   std::vector<std::string> names{history_column("time", "s"), "step", "stage"};
   const PhaseTraits phases = phase_traits(scene.phases);
   const auto of_points = output_fields<ParticleState<dim>>(phases, {});  // without what follows from the laws
-  for (const auto &point : scene.output.point) {
+  for (const auto &point : scene.output->point) {
     auto columns = of_points.tracked();
     columns.insert(columns.end(),
                    {{"acceleration", "m/s2"}, {"mobilised_friction", "deg"}, {"state", "-"}, {"plastic_strain", "-"}});

@@ -4,9 +4,10 @@
 #include "commands/foreign_code.h"
 #include "commands/gallery.h"
 #include "commands/slice.h"
-#include "commands/sweep.h"
+#include "commands/starter.h"
 #include "doubts/doubts.h"
 #include "scene/reader.h"
+#include "scene/scene.h"
 #include "simulation.h"
 
 namespace talus {

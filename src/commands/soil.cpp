@@ -9,7 +9,9 @@
 #include "commands/gallery.h"
 #include "output/pictures.h"
 #include "physics/laws/element_test.h"
+#include "scene/body_source.h"
 #include "scene/reader.h"
+#include "scene/scene.h"
 #include "scene/words.h"
 
 namespace talus {

@@ -1,22 +1,21 @@
 #include <algorithm>
 #include <cmath>
 #include <csignal>
-#include <fstream>
-#include <nlohmann/json.hpp>
 
 #include "commands/commands.h"
 #include "commands/foreign_code.h"
 #include "commands/gallery.h"
-#include "commands/sweep.h"
+#include "commands/starter.h"
 #include "doubts/doubts.h"
 #include "output/pictures.h"
 #include "scene/reader.h"
+#include "scene/scene.h"
+#include "scene/stage.h"
 #include "simulation.h"
+#include "simulation/factor_document.h"
 
 namespace talus {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 struct SolveArguments {
   std::string scene, directory;
@@ -29,58 +28,11 @@ void on_signal(int) {
   end_soon_without_starter();
 }
 
-Json json_of(const FactorBracket &bracket) {
-  const bool known = bracket.decided && bracket.lower > 0 && bracket.upper > 0;
-  return {{"decided", bracket.decided},
-          {"value", known ? bracket.value() : NAN},
-          {"equilibrium", bracket.lower},
-          {"mechanism", bracket.upper}};
-}
-
-Json json_of(const std::map<TrialFlow, FactorBracket> &by_flow) {
-  Json object = Json::object();
-  for (const auto &[flow, bracket] : by_flow) object[name_of(flow)] = json_of(bracket);
-  return object;
-}
-
-Json json_of(const Mechanism &mechanism) {
-  return {{"factor_of_safety", json_of(static_cast<const FactorBracket &>(mechanism))},
-          {"by_flow", json_of(mechanism.by_flow)},
-          {"moving_volume_m3", mechanism.moving_volume},
-          {"low_m", mechanism.low},
-          {"high_m", mechanism.high},
-          {"share_of_critical_soil", mechanism.of_critical},
-          {"slip_surface_m", mechanism.slip_surface}};
-}
-
 /// The critical mechanism, then the others.
 std::vector<Mechanism> mechanisms_of(const FactorOfSafety &factor) {
   std::vector<Mechanism> all{factor};
   all.insert(all.end(), factor.further.begin(), factor.further.end());
   return all;
-}
-
-Json json_of(const FactorOfSafety &factor) {
-  Json mechanisms = Json::array(), trials = Json::array();
-  for (const Mechanism &m : mechanisms_of(factor)) mechanisms.push_back(json_of(m));
-  for (const StrengthTrial &t : factor.trials)
-    trials.push_back({{"search", t.search},
-                      {"factor", t.factor},
-                      {"flow", name_of(t.flow)},
-                      {"outcome", name_of(t.outcome)},
-                      {"iterations", t.iterations},
-                      {"steps", t.steps},
-                      {"residual", t.residual},
-                      {"displacement_m", t.displacement},
-                      {"surplus_of_work", t.surplus},
-                      {"wall_s", t.wall_seconds}});
-  return {{"factor_of_safety", json_of(static_cast<const FactorBracket &>(factor))},
-          {"flow", name_of(factor.flow)},
-          {"by_flow", json_of(factor.by_flow)},
-          {"weakened", factor.weakened.upper > 0 ? json_of(factor.weakened) : Json()},
-          {"stages_without_equilibrium", factor.lost_stages},
-          {"mechanisms", mechanisms},
-          {"trials", trials}};
 }
 
 std::string in_words(const FactorBracket &b) {
@@ -135,13 +87,13 @@ int solve(const SolveArguments &arguments) {
   const std::string file = find_scene(arguments.scene);
   Scene scene = read_scene(file, arguments.set);
   if (arguments.no_umat) refuse_umat(scene);
-  const auto dynamic = [](const Stage &stage) { return stage.kind == StageKind::dynamic; };
-  std::erase_if(scene.stage, dynamic);
+  std::erase_if(scene.stage, [](const Stage &stage) { return !stage.is_static(); });
   if (scene.stage.empty())
     throw std::invalid_argument(
         file +
         " has no quasi-static stage to solve: all of its stages are of kind = \"dynamic\". Put one before them:\n"
         "[[stage]]\nname = \"gravity\"\nkind = \"quasi_static\"\nduration = 1\nsoftening = false");
+  if (arguments.factor_of_safety) scene.add_factor_stage();
   RunOptions options;
   options.directory =
       arguments.directory.empty() ? default_results(file, arguments.set, "_solve") : arguments.directory;
@@ -156,18 +108,13 @@ int solve(const SolveArguments &arguments) {
   int rank;
   MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
   int status = 0;
-  if (arguments.factor_of_safety) {
+  simulation->run();
+  if (scene.finds_factor()) {
     const FactorOfSafety factor = simulation->factor_of_safety();
     for (const Mechanism &m : mechanisms_of(factor))
       if (!m.decided || std::ranges::any_of(m.by_flow, [](const auto &f) { return !f.second.decided; }))
         status = undecided_status;
-    if (rank == 0) {
-      const std::string document = json_of(factor).dump(1) + "\n";
-      std::ofstream(options.directory + "/factor_of_safety.json") << document;
-      arguments.json ? static_cast<void>(std::fputs(document.c_str(), stdout)) : print(factor);
-    }
-  } else {
-    simulation->run();
+    if (rank == 0) arguments.json ? static_cast<void>(std::fputs(document_of(factor).c_str(), stdout)) : print(factor);
   }
   if (rank == 0 && !arguments.no_pictures) {
     PictureChoice choice;

@@ -5,6 +5,8 @@
 #include "commands/gallery.h"
 #include "commands/study_file.h"
 #include "commands/sweep.h"
+#include "scene/output_source.h"
+#include "scene/scene.h"
 #include "scene/words.h"
 
 namespace talus {
@@ -163,7 +165,7 @@ class Study {
     }
     names.insert(names.end(), {"fails", "load_time_of_failure_s", "largest_displacement_m", "travel_distance_m",
                                "volume_of_slide_m3", "depth_of_slide_m"});
-    for (const auto &point : base_.output.point)
+    for (const auto &point : base_.output->point)
       names.insert(names.end(), {point.name + "_displacement_m", point.name + "_largest_speed_m_s"});
     return names;
   }

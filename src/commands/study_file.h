@@ -10,7 +10,7 @@
 #include "commands/sampling.h"
 #include "scene/quantity.h"
 #include "scene/reader.h"
-#include "scene/scene.h"
+#include "scene/required.h"
 
 namespace talus {
 

@@ -1,7 +1,6 @@
 #include "commands/sweep.h"
 
 #include <petscsys.h>
-#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -23,13 +22,18 @@
 #include "base/start_program.h"
 #include "commands/foreign_code.h"
 #include "commands/history_columns.h"
+#include "commands/starter.h"
 #include "output/replace_file.h"
 #include "output/results_folder.h"
 #include "output/script.h"
 #include "physics/boundary/boundary.h"
-#include "physics/laws/laws.h"
+#include "physics/laws/law.h"
+#include "scene/body_source.h"
+#include "scene/boundary_source.h"
 #include "scene/quantity.h"
 #include "scene/reader.h"
+#include "scene/scene.h"
+#include "scene/stage.h"
 #include "simulation.h"
 #include "simulation/scene_keys.h"
 #include "solvers/integrators.h"
@@ -38,10 +42,6 @@ namespace talus {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr const char *starter_variable = "TALUS_STARTER";  // process that has started this one as a run of a sweep
-pid_t starter_process = 0;                                 // 0: this is no such run
-constexpr int stopped_status = 4;                          // of a run that a signal has ended
 
 /// Runs are missing: the user ended the command, or something from outside ended some of them.
 struct Interrupted : std::runtime_error {
@@ -247,8 +247,7 @@ void Runs::start(const Trial &trial, std::size_t number) {
   if (sweep_.options.no_umat) words.push_back("--no-umat");
   const std::vector<std::string> set = overrides(trial);
   if (!set.empty()) words.push_back("--set"), words.insert(words.end(), set.begin(), set.end());
-  const std::string starter = std::string(starter_variable) + "=" + std::to_string(getpid());
-  running_[start_program("/proc/self/exe", words, starter, folder(trial) + "/screen")] = {number, Clock::now()};
+  running_[start_program("/proc/self/exe", words, this_starter(), folder(trial) + "/screen")] = {number, Clock::now()};
 }
 
 /// Starts the next run that is missing. False where there is none, or somebody still writes into its folder.
@@ -416,22 +415,6 @@ std::string unit_of_key(const std::string &key) {
       if (!one.unit.empty() && matches(key, one.path)) return one.unit;
   return "";
 }
-
-void end_with_starter() {
-  const char *given = std::getenv(starter_variable);
-  if (!given) return;
-  starter_process = static_cast<pid_t>(std::atol(given));
-  unsetenv(starter_variable);
-  prctl(PR_SET_PDEATHSIG, SIGTERM);
-  if (getppid() != starter_process) raise(SIGTERM);  // it was gone before that
-}
-
-void end_soon_without_starter() {
-  constexpr unsigned grace = 5;                                           // [s]
-  if (starter_process > 0 && getppid() != starter_process) alarm(grace);  // SIGALRM ends a process
-}
-
-int status_for_starter(int status) { return status && interrupted && starter_process > 0 ? stopped_status : status; }
 
 Scene read_wholly(const std::string &file, const std::vector<std::string> &set, bool no_umat) {
   Scene scene = read_scene(file, set);

@@ -71,14 +71,4 @@ std::string same_keys(const Scene &scene, const std::vector<std::string> &keys);
 /// Unit of a number without one at a key of a scene, such as body.clay.cohesion; empty where it has none.
 std::string unit_of_key(const std::string &key);
 
-/// To be called first by every program: a run of a sweep ends by SIGTERM when the program that started it is gone, even
-/// killed. Programs that the run starts itself are not concerned.
-void end_with_starter();
-/// To be called by what handles SIGTERM: a run whose starter is gone has some seconds to end in order, also in the
-/// midst of a mesh or an equilibrium, and is ended then. Safe in a signal handler.
-void end_soon_without_starter();
-/// To be called with the exit status of every program: a run of a sweep says by another status that a signal has ended
-/// it.
-int status_for_starter(int status);
-
 }  // namespace talus

@@ -2,6 +2,7 @@
 
 #include "base/rounded.h"
 #include "scene/reader.h"
+#include "scene/scene.h"
 #include "scene/usual.h"
 #include "simulation/softening.h"
 

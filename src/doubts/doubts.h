@@ -10,10 +10,13 @@
 #include <vector>
 
 #include "physics/boundary/pore_conditions.h"
-#include "physics/laws/laws.h"
+#include "physics/laws/law.h"
+#include "scene/boundary_source.h"
 #include "scene/doubt.h"
 #include "scene/doubt_names.h"
 #include "scene/scene.h"
+#include "scene/stage.h"
+#include "scene/water_table.h"
 #include "simulation.h"
 
 namespace talus {
@@ -89,15 +92,9 @@ inline double table_at(const WaterTable &table, const std::array<double, 3> &x) 
 /// May water stand on the face? Not on what faces down, and not where a support is.
 inline bool may_be_flooded(const SoilFace &face, int up) { return !face.held && face.normal[up] > -1e-6; }
 inline bool has_seepage(const Scene &scene) {
-  return std::ranges::any_of(scene.stage, [](const Stage &stage) { return stage.kind == StageKind::seepage; });
+  return std::ranges::any_of(scene.stage, [](const Stage &stage) { return stage.seeps(); });
 }
-inline bool has_friction(const Law &law) {
-  return std::visit(
-      [](const auto &one) {
-        return requires { one.friction_angle; };
-      },
-      law);
-}
+inline bool has_friction(const Law &law) { return frictional_strength(law); }
 inline bool on_free_surface(const BoundarySource &boundary) {
   return std::ranges::count(boundary.group, std::string(free_surface)) > 0;
 }

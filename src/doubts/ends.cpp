@@ -5,6 +5,9 @@
 
 #include "base/rounded.h"
 #include "doubts/doubts.h"
+#include "scene/mesh_source.h"
+#include "scene/scene.h"
+#include "scene/stage.h"
 
 namespace talus {
 namespace {
@@ -15,9 +18,8 @@ void doubt_sides(const Start &start, Doubts &doubts) {
   constexpr double thin = 0.1;  // of the height of the soil: a layer that comes to light there decides little
   const Scene &scene = start.scene;
   const auto matters = [&](const Stage &stage) {
-    return stage.kind == StageKind::dynamic
-               ? stage.until == StopWhen::equilibrium || scene.mesh.leaving_particles == WhenOutside::stop
-               : stage.kind != StageKind::seepage;
+    return !stage.is_static() ? stage.stop().settles || scene.mesh->leaving_particles == WhenOutside::stop
+                              : stage.soil_moves();
   };
   if (std::ranges::none_of(scene.stage, matters)) return;
   for (int d = 0; d < scene.dimension; ++d)
@@ -45,7 +47,7 @@ void doubt_sides(const Start &start, Doubts &doubts) {
 /// Soil whose lowest faces end with the mesh and have no support hangs on its sides, or falls out of the mesh.
 void doubt_base(const Start &start, Doubts &doubts) {
   const Scene &scene = start.scene;
-  if (std::ranges::all_of(scene.stage, [](const Stage &stage) { return stage.kind == StageKind::seepage; })) return;
+  if (std::ranges::all_of(scene.stage, [](const Stage &stage) { return !stage.soil_moves(); })) return;
   constexpr int strips = 64;  // per level axis: a face is one of the lowest where none in its strip lies deeper
   const int up = start.up, across = 0, along = scene.dimension == 2 ? across : 3 - up;
   const double coarse = std::max(start.extent(across), start.extent(along)) / strips;

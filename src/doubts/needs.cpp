@@ -9,7 +9,14 @@
 #include "doubts/doubts.h"
 #include "doubts/scales.h"
 #include "physics/boundary/boundary.h"
+#include "scene/body_source.h"
+#include "scene/boundary_source.h"
+#include "scene/output_source.h"
 #include "scene/reader.h"
+#include "scene/scene.h"
+#include "scene/stage.h"
+#include "scene/transfer_source.h"
+#include "scene/water_source.h"
 
 namespace talus {
 namespace {
@@ -31,7 +38,7 @@ LayerNeeds layer_of(const Start &start, const std::vector<BodyNeeds> &bodies, do
   LayerNeeds layer;
   double mass = 0, volume = 0, softness = 0, slowness = 0;
   std::array<double, 3> low = bodies[0].body.low, high = bodies[0].body.high;
-  const double water = fluids_move(scene.phases) ? scene.water.density : 0;
+  const double water = fluids_move(scene.phases) ? scene.water->density : 0;
   for (std::size_t k = 0; k < bodies.size(); ++k) {
     const BodyNeeds &b = bodies[k];
     if (!(b.body.volume > 0)) continue;  // a stage adds it
@@ -65,10 +72,10 @@ LayerNeeds layer_of(const Start &start, const std::vector<BodyNeeds> &bodies, do
 void burst(AnySimulation &simulation, Scene &scene, Needs &needs) {
   PetscLogDouble start, now;
   double mine[2] = {0, 0}, all[2];
-  const double interval = scene.transfer.remap_interval;
+  const double interval = scene.transfer->remap_interval;
   double time = 0, end = 0;  // of the motion with which the run begins; steps beyond its end are timed and no more [s]
   for (const Stage &stage : scene.stage) {
-    if (is_static(stage.kind)) break;
+    if (stage.is_static()) break;
     end += stage.duration;
   }
   try {
@@ -86,7 +93,7 @@ void burst(AnySimulation &simulation, Scene &scene, Needs &needs) {
       }
     };
     timed(burst_length, longest_burst, needs.burst_steps, needs.seconds_per_step);
-    scene.transfer.remap_interval = 0;
+    scene.transfer->remap_interval = 0;
     int remaps = 0;
     timed(burst_length / 2, longest_burst / 2, remaps, needs.seconds_per_remap);
     needs.seconds_per_remap = std::max(needs.seconds_per_remap, needs.seconds_per_step);
@@ -96,7 +103,7 @@ void burst(AnySimulation &simulation, Scene &scene, Needs &needs) {
     else
       scene.forget_function_faults();
   }
-  scene.transfer.remap_interval = interval;
+  scene.transfer->remap_interval = interval;
   (void)PetscMemoryGetCurrentUsage(&mine[0]);
   MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
   needs.memory = all[0], needs.results = all[1];
@@ -106,10 +113,10 @@ Drainage drainage_of(const Scene &scene, const Needs &needs) {
   Drainage d;
   if (needs.gravity == 0) return d;
   for (std::size_t i = 0; i < needs.stages.size(); ++i)
-    if (!is_static(scene.stage[i].kind)) d.time += needs.stages[i].duration;
+    if (!scene.stage[i].is_static()) d.time += needs.stages[i].duration;
   if (d.time == 0) return d;
-  for (const Stage &stage : scene.stage) d.computed |= water_flows(stage.kind);
-  const double water_weight = scene.water.density * needs.gravity;
+  for (const Stage &stage : scene.stage) d.computed |= stage.water_flows();
+  const double water_weight = scene.water->density * needs.gravity;
   const auto bound = [&](double factor) {
     return scales::conductivity_at(factor, needs.layer.modulus, water_weight, d.time, needs.layer.height);
   };
@@ -124,7 +131,7 @@ Drainage drainage_of(const Scene &scene, const Needs &needs) {
 std::vector<HeatedBaseNeeds> heated_bases_of(const Scene &scene, const Needs &needs) {
   double time = 0;
   for (const Stage &stage : scene.stage)
-    if (!is_static(stage.kind)) time += stage.duration;
+    if (!stage.is_static()) time += stage.duration;
   const BodyReport &soil = needs.bodies.front().body;
   double middle[3];
   for (int d = 0; d < 3; ++d) middle[d] = (soil.low[d] + soil.high[d]) / 2;
@@ -176,7 +183,7 @@ void try_ground_downhill(const Scene &scene, const AnySimulation &simulation) {
     for (const auto &value : {kind.friction_coefficient, kind.adhesion})
       for (const auto &[x, y, z] : places)
         if (value) (void)value(x, y, z, 0, 0);
-    const WaterTable &table = scene.water.table;
+    const WaterTable &table = scene.water->table;
     for (const auto &[x, y, z] : places)
       if (kind.friction_coefficient && table.given() && scene.phases == PhaseModel::drained) (void)table.at(x, y, z);
   }
@@ -240,15 +247,17 @@ Needs find_needs(Scene &scene, bool with_model) {
   }
   needs.snapshots = 1;
   for (const Stage &stage : scene.stage) {
-    if (is_static(stage.kind)) {  // by finite elements: no waves, no steps of the motion
-      needs.stages.push_back({stage.name, stage.duration, static_cast<double>(stage.load_steps), 0, 0});
+    if (stage.is_static()) {  // by finite elements: no waves, no steps of the motion
+      needs.stages.push_back({stage.name, stage.duration,
+                              stage.finite_elements() ? static_cast<double>(stage.finite_elements()->load_steps) : 0, 0,
+                              0});
       continue;
     }
     const double steps = std::ceil(stage.duration / needs.step);
     needs.stages.push_back(
         {stage.name, stage.duration, steps, steps * needs.seconds_per_step, stage.duration / needs.layer.transit});
     needs.snapshots +=
-        scene.output.interval > 0 ? static_cast<long long>(std::ceil(stage.duration / scene.output.interval)) : 1;
+        scene.output->interval > 0 ? static_cast<long long>(std::ceil(stage.duration / scene.output->interval)) : 1;
   }
   needs.results *= static_cast<double>(needs.snapshots);
   needs.heated_bases = heated_bases_of(scene, needs);

@@ -9,6 +9,11 @@
 #include "doubts/doubts.h"
 #include "physics/boundary/boundary.h"
 #include "physics/phase_models.h"
+#include "scene/body_source.h"
+#include "scene/boundary_source.h"
+#include "scene/scene.h"
+#include "scene/stage.h"
+#include "scene/water_source.h"
 
 namespace talus {
 namespace {
@@ -19,10 +24,10 @@ namespace {
 std::vector<double> levels_of(const Scene &scene) {
   constexpr int intervals = 50;
   double end = 0;
-  std::vector<double> times = scene.water.level.times();
+  std::vector<double> times = scene.water->level.times();
   for (const Stage &stage : scene.stage)
     if (!stage.hold_loads) times.push_back(end += stage.duration);
-  const Function &level = scene.water.level;
+  const Function &level = scene.water->level;
   std::vector<double> levels{level(0)};
   if (!level.depends_on_time() || level.uses("t")) return levels;
   for (int k = 1; k <= intervals; ++k) times.push_back(end * k / intervals);
@@ -88,7 +93,7 @@ std::string place_of(const Pond &pond) {
 /// own; in 3D a valley is no hollow.
 void doubt_ponds(const Start &start, const std::vector<double> &levels, Doubts &doubts) {
   const Scene &scene = start.scene;
-  const WaterTable &table = scene.water.table;
+  const WaterTable &table = scene.water->table;
   if (!table.given()) return;
   const double film = visible * start.height(), shore = visible * start.extent(0);
   std::optional<Pond> sloping, hollow;  // the deepest of each kind
@@ -135,7 +140,7 @@ void doubt_own_tables(const Start &start, const std::vector<double> &levels, Dou
           const auto &x = face.corner[a];
           const double head = table_at(own, x) + level, ground = x[start.up];
           const double open =
-              scene.water.table.given() ? std::max(ground, table_at(scene.water.table, x) + level) : ground;
+              scene.water->table.given() ? std::max(ground, table_at(scene.water->table, x) + level) : ground;
           if (head - open <= visible * start.height()) continue;
           if (!over) over = Pond{x[0], x[0], head, head, 0};
           over->widen(x[0], head, open);
@@ -170,7 +175,7 @@ class OpenWater {
     const int boundary = on(face);
     if (boundary < 0) return x[up_];
     const double g = scene_.gravity.empty() ? 0 : -scene_.gravity[up_];
-    const LiquidBeyond water{scene_.water.density * g, x[up_]};
+    const LiquidBeyond water{scene_.water->density * g, x[up_]};
     if (!(water.unit_weight > 0)) return x[up_];
     return x[up_] + std::max(0., boundary_[boundary].outside(x[0], x[1], x[2], 0, water)) / water.unit_weight;
   }
@@ -186,7 +191,7 @@ class OpenWater {
 /// about to be set free, is none on which water would stand.
 void doubt_dry_ponds(const Start &start, const OpenWater &open, double level, Doubts &doubts) {
   const Scene &scene = start.scene;
-  const WaterTable &table = scene.water.table;
+  const WaterTable &table = scene.water->table;
   const int up = start.up;
   const double film = visible * start.height(), narrow = visible * start.extent(0);
   const auto stands = [&](const std::array<double, 3> &x) {
@@ -229,9 +234,9 @@ void doubt_dry_ponds(const Start &start, const OpenWater &open, double level, Do
 void doubt_film_on_ground(const Start &start, const OpenWater &open, double level, Doubts &doubts) {
   constexpr double share = 0.05;  // of the ground
   const Scene &scene = start.scene;
-  const WaterTable &table = scene.water.table;
+  const WaterTable &table = scene.water->table;
   if (scene.phases != PhaseModel::saturated || !table.given() || open.elsewhere() >= 0) return;
-  if (std::ranges::none_of(scene.stage, [](const Stage &s) { return !is_static(s.kind) && s.pore_flow; })) return;
+  if (std::ranges::none_of(scene.stage, [](const Stage &s) { return !s.is_static() && s.pore_flow; })) return;
   double all = 0, dry = 0, most = 0;
   for (const SoilFace &face : start.surface) {
     if (!may_be_flooded(face, start.up) || face.ends_mesh) continue;
@@ -259,8 +264,8 @@ void doubt_open_water(const Start &start, Doubts &doubts) {
     doubt_dry_ponds(start, open, levels.front(), doubts);
     doubt_film_on_ground(start, open, levels.front(), doubts);
   }
-  if (scene.phases != PhaseModel::drained || !scene.water.open_water_load) return;
-  if (scene.stage.front().kind == StageKind::seepage) return;  // which finds the water that counts
+  if (scene.phases != PhaseModel::drained || !scene.water->open_water_load) return;
+  if (scene.stage.front().seeps()) return;  // which finds the water that counts
   doubt_ponds(start, levels, doubts);
   doubt_own_tables(start, levels, doubts);
 }

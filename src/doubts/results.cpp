@@ -2,6 +2,7 @@
 #include "base/rounded.h"
 #include "doubts/doubts.h"
 #include "physics/pores/fluids.h"
+#include "scene/scene.h"
 
 namespace talus {
 namespace {

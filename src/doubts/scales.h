@@ -21,12 +21,9 @@ inline double settlement(double density, double gravity, double height, double m
   return own_weight_strain(density, gravity, height, modulus) * height / 2;
 }
 
-/// Terzaghi's T = c_v t / L^2 with c_v = k_h M / gamma_w: pore pressure of a layer that drains over L is gone at T of
-/// about 1 and has not begun to go at 0.01. Terzaghi (1943), Theoretical soil mechanics, ch. 13.
-inline double time_factor(double conductivity, double modulus, double water_weight, double time, double length) {
-  return conductivity * modulus / water_weight * time / (length * length);
-}
-/// The hydraulic conductivity [m/s] at which T has this value.
+/// The hydraulic conductivity [m/s] at which Terzaghi's T = c_v t / L^2, with c_v = k_h M / gamma_w, has this value:
+/// pore pressure of a layer that drains over L is gone at T of about 1 and has not begun to go at 0.01. Terzaghi
+/// (1943), Theoretical soil mechanics, ch. 13.
 inline double conductivity_at(double factor, double modulus, double water_weight, double time, double length) {
   return factor * water_weight * length * length / (modulus * time);
 }

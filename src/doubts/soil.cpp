@@ -3,6 +3,13 @@
 
 #include "base/rounded.h"
 #include "doubts/doubts.h"
+#include "physics/laws/frictional_strength.h"
+#include "scene/body_source.h"
+#include "scene/quasi_static_source.h"
+#include "scene/scene.h"
+#include "scene/stage.h"
+#include "scene/transfer_source.h"
+#include "scene/water_source.h"
 
 namespace talus {
 namespace {
@@ -32,14 +39,14 @@ void doubt_strength(const Start &start, std::size_t b, Doubts &doubts) {
 void doubt_undrained_strength(const Start &start, std::size_t b, Doubts &doubts) {
   const Scene &scene = start.scene;
   const BodyReport &body = start.bodies[b];
-  const WaterTable &table = scene.body[b].water_table.given() ? scene.body[b].water_table : scene.water.table;
+  const WaterTable &table = scene.body[b].water_table.given() ? scene.body[b].water_table : scene.water->table;
   const bool none =
       has_friction(start.laws[b]) && body.strength.friction_angle[1] == 0 && body.strength.cohesion[1] > 0;
   if (!none || body.particles == 0 || scene.phases != PhaseModel::drained || !table.given()) return;
   if (reads_suction(start.laws[b])) return;
-  const std::vector<double> times = scene.water.level.times();
-  double rise = scene.water.level.uses("t") ? std::numeric_limits<double>::infinity() : scene.water.level(0);
-  for (const double t : times) rise = std::max(rise, scene.water.level(t));
+  const std::vector<double> times = scene.water->level.times();
+  double rise = scene.water->level.uses("t") ? std::numeric_limits<double>::infinity() : scene.water->level(0);
+  for (const double t : times) rise = std::max(rise, scene.water->level(t));
   double highest = table.points.empty() ? std::numeric_limits<double>::infinity() : -1e300;
   for (const auto &point : table.points) highest = std::max(highest, point[1] + rise);
   if (highest > body.low[start.up])
@@ -58,7 +65,7 @@ void doubt_soft_water(const Start &start, std::size_t b, Doubts &doubts) {
                        "body." + scene.body[b].name +
                            ": share of an undrained load that the pore water takes, "
                            "by water.bulk_modulus",
-                       1 / (1 + n * bulk_modulus(start.laws[b]) / scene.water.bulk_modulus), one, {0.8, 1});
+                       1 / (1 + n * bulk_modulus(start.laws[b]) / scene.water->bulk_modulus), one, {0.8, 1});
 }
 
 /// Sand that is steeper than its friction angle must fail, but in few cells over its depth it may keep its slope.
@@ -92,13 +99,9 @@ void doubt_soil(const Start &start, Doubts &doubts) {
   const Scene &scene = start.scene;
   for (std::size_t b = 0; b < start.laws.size(); ++b) {
     const std::string name = "body." + scene.body[b].name;
-    const bool dilates = std::visit(
-        [](const auto &law) {
-          if constexpr (requires { law.dilation_angle; }) return law.dilation_angle > 0;
-          return false;
-        },
-        start.laws[b]);
-    if (dilates && scene.transfer.locking == Locking::nodal)
+    const FrictionalStrength *strength = frictional_strength(start.laws[b]);
+    const bool dilates = strength && strength->dilation_angle > 0;
+    if (dilates && scene.transfer->locking == Locking::nodal)
       doubts.say("nodal_locking", name + " dilates, and transfer.locking = \"nodal\" then creates energy");
     if (scene.body[b].volume_cap > 0 && fluids_move(scene.phases))
       doubts.say("pore_volume_cap",
@@ -110,10 +113,10 @@ void doubt_soil(const Start &start, Doubts &doubts) {
 }
 
 void doubt_cells(const Start &start, Doubts &doubts) {
-  const auto rests = std::ranges::find_if(start.scene.stage, [](const Stage &stage) { return is_static(stage.kind); });
+  const auto rests = std::ranges::find_if(start.scene.stage, [](const Stage &stage) { return stage.is_static(); });
   for (const BodyReport &body : start.bodies)
     if (body.one_element_across && rests != start.scene.stage.end() &&
-        start.scene.quasi_static.elements != Elements::quadratic)
+        start.scene.quasi_static->elements != Elements::quadratic)
       doubts.say("thin_body",
                  "body." + body.name + " is one element across: stage." + rests->name + " will end the run");
   constexpr double few = 4;  // over the depth: not even a slip surface fits in

@@ -3,6 +3,11 @@
 
 #include "base/rounded.h"
 #include "doubts/doubts.h"
+#include "earthquake/sources.h"
+#include "scene/body_source.h"
+#include "scene/scene.h"
+#include "scene/stage.h"
+#include "scene/water_source.h"
 #include "simulation/changing_loads.h"
 
 namespace talus {
@@ -13,19 +18,22 @@ void doubt_stages(const Scene &scene, Doubts &doubts) {
   for (const Stage &stage : scene.stage) {
     const std::string name = "stage." + stage.name;
     if (!stage.hold_loads) end += stage.duration;
-    if (stage.gravity_ramp > stage.duration)
-      doubts.say("gravity_ramp", name + ".gravity_ramp = " + rounded(stage.gravity_ramp) +
+    if (stage.gravity_ramp() > stage.duration)
+      doubts.say("gravity_ramp", name + ".gravity_ramp = " + rounded(stage.gravity_ramp()) +
                                      " s is longer than the stage: "
                                      "gravity does not come to its full value in it");
-    if (stage.until == StopWhen::failure && stage.failure_time > stage.duration)
-      doubts.say("failure_time", name + ".failure_time = " + rounded(stage.failure_time) +
+    const auto *fails = stage.motion() ? std::get_if<AtFailure>(&stage.motion()->until) : nullptr;
+    if (fails && fails->failure_time > stage.duration)
+      doubts.say("failure_time", name + ".failure_time = " + rounded(fails->failure_time) +
                                      " s is longer than the stage: "
                                      "it finds no failure");
-    if (!stage.pore_flow && !water_flows(stage.kind) && !flowed.empty())
+    if (!stage.pore_flow && !stage.water_flows() && !flowed.empty())
       doubts.say("pore_flow", name + ".pore_flow = false gives the pores the pressure of [water] again: what stage." +
                                   flowed + " has brought is undone");
-    if (water_flows(stage.kind)) flowed = stage.name;
+    if (stage.water_flows()) flowed = stage.name;
   }
+  for (const EarthquakeSource &component : scene.earthquake)
+    if (const std::string sentence = drift_of(read_motion(component)); !sentence.empty()) doubts.say("drift", sentence);
   for (const ChangingLoad &load : changing_loads(scene)) {
     const double begin = std::ranges::min_element(load.when, {}, &TimeSpan::begin)->begin;
     if (end == 0)
@@ -35,14 +43,14 @@ void doubt_stages(const Scene &scene, Doubts &doubts) {
                                   " s on, and the loads of the stages end at t = " + rounded(end) +
                                   " s: it acts as at t = 0 in all of the run");
   }
-  const auto flows = [](const Stage &stage) { return water_flows(stage.kind); };
+  const auto flows = [](const Stage &stage) { return stage.water_flows(); };
   for (const BodySource &body : scene.body)
     if (std::ranges::any_of(scene.stage, flows) && body.retention.reader && !body.relative_permeability.reader)
       doubts.say("relative_permeability", "body." + body.name +
                                               " has a retention curve and no relative_permeability: it conducts "
                                               "water as if its pores were full");
-  if (scene.phases == PhaseModel::drained && scene.water.suction.given() && has_seepage(scene) &&
-      scene.stage.front().kind != StageKind::seepage)
+  if (scene.phases == PhaseModel::drained && scene.water->suction.given() && has_seepage(scene) &&
+      !scene.stage.front().seeps())
     doubts.say("early_suction", "water.suction acts from the first stage of seepage on: the soil of stage." +
                                     scene.stage.front().name +
                                     " has none; put a stage of seepage with hold_loads = true before it");

@@ -4,6 +4,8 @@
 
 #include "doubts/doubts.h"
 #include "physics/laws/strength_by_place.h"
+#include "scene/body_source.h"
+#include "scene/scene.h"
 
 namespace talus {
 namespace {

@@ -5,6 +5,11 @@
 #include "doubts/doubts.h"
 #include "physics/boundary/boundary.h"
 #include "physics/phase_models.h"
+#include "scene/body_source.h"
+#include "scene/boundary_source.h"
+#include "scene/scene.h"
+#include "scene/stage.h"
+#include "scene/water_source.h"
 
 namespace talus {
 namespace {
@@ -32,7 +37,7 @@ void doubt_supply(const Start &start, const Watered &one, double end, Doubts &do
     upward = std::max(upward, facing);
     for (int a = 0; a < scene.dimension && one.kind.open_water; ++a) {
       const auto &[x, y, z] = face->corner[a];
-      pressure = std::max(pressure, one.kind.outside(x, y, z, 0, {scene.water.density * g, face->corner[a][up]}));
+      pressure = std::max(pressure, one.kind.outside(x, y, z, 0, {scene.water->density * g, face->corner[a][up]}));
     }
   }
   const bool seeps = one.kind.water == OnWater::seepage;
@@ -57,7 +62,7 @@ void doubt_supply(const Start &start, const Watered &one, double end, Doubts &do
 
 /// Faces of a boundary belong to the mesh. Soil that settles or slides away from them leaves the boundary without soil.
 void doubt_faces_left(const Scene &scene, const Watered &one, Doubts &doubts) {
-  const auto moves = [](const Stage &s) { return !is_static(s.kind) && s.pore_flow; };
+  const auto moves = [](const Stage &s) { return !s.is_static() && s.pore_flow; };
   if (!one.kind.fluid_face() || one.anywhere || std::ranges::none_of(scene.stage, moves)) return;
   if (std::ranges::any_of(one.faces, [](const SoilFace *face) { return !face->ends_mesh; }))
     doubts.say("faces_left", one.name() +
@@ -73,7 +78,7 @@ void doubt_open_water_without_flow(const Start &start, const Watered &one, Doubt
   double from = 0;  // load time [s]
   for (const Stage &stage : start.scene.stage) {
     const double to = from + (stage.hold_loads ? 0 : stage.duration);
-    if (one.kind.open_water && is_static(stage.kind) && !water_flows(stage.kind) &&
+    if (one.kind.open_water && stage.is_static() && !stage.water_flows() &&
         std::abs(level(to) - level(from)) >= visible * start.height())
       doubts.say("undrained_stage", "the water of " + one.name() + " goes from " + rounded(level(from)) + " to " +
                                         rounded(level(to)) + " m in stage " + stage.name +
@@ -120,7 +125,8 @@ void doubt_water_boundaries(const Start &start, Doubts &doubts) {
     doubt_supply(start, one, end, doubts);
     if (moves) doubt_faces_left(scene, one, doubts), doubt_open_water_without_flow(start, one, doubts);
     // pressure rises under ground that lets no water out, where none stands that would bear against it
-    if (drained && scene.water.open_water_load && has_seepage(scene) && one.anywhere && one.kind.water == OnWater::wall)
+    if (drained && scene.water->open_water_load && has_seepage(scene) && one.anywhere &&
+        one.kind.water == OnWater::wall)
       doubts.say(
           "sealed_ground",
           one.name() +

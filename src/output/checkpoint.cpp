@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char *first_line = "Talus checkpoint 7\n";
+constexpr const char *first_line = "Talus checkpoint 8\n";
 
 std::string header_file(const std::string &dir) { return dir + "/checkpoint/header"; }
 std::string header_before(const std::string &dir) { return header_file(dir) + ".before"; }

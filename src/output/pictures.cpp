@@ -80,4 +80,12 @@ bool draw_element_tests(const std::string &dir, const std::vector<std::string> &
   return draw("talus_soil.py", dir, options);
 }
 
+bool draw_records(const std::string &dir, const std::vector<std::string> &names) {
+  return draw("talus_record.py", dir, names);
+}
+
+bool draw_newmark(const std::string &dir, const std::vector<std::string> &names) {
+  return draw("talus_newmark.py", dir, names);
+}
+
 }  // namespace talus

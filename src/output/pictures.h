@@ -31,4 +31,9 @@ std::string without_pictures(const std::string &dir);
 /// Draws DIR/soil.png from the CSV files of element tests in `dir`, with the same answer.
 bool draw_element_tests(const std::string &dir, const std::vector<std::string> &tests, const std::string &title);
 
+/// Draws DIR/record.png from the CSV files of motions of the ground in `dir`, with the same answer.
+bool draw_records(const std::string &dir, const std::vector<std::string> &names);
+/// Draws DIR/newmark.png from the ways of a sliding block, likewise.
+bool draw_newmark(const std::string &dir, const std::vector<std::string> &names);
+
 }  // namespace talus

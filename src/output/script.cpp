@@ -20,7 +20,8 @@ std::string script_folder() {
 }
 
 int run_script(const std::string &name, const std::vector<std::string> &arguments) {
-  std::vector<std::string> words{TALUS_PYTHON, "-B", script_folder() + "/" + name};  // -B: no caches among the sources
+  std::vector<std::string> words{TALUS_PYTHON, "-B",
+                                 std::filesystem::path(script_folder()) / name};  // -B: no caches among the sources
   words.insert(words.end(), arguments.begin(), arguments.end());
   const pid_t child = start_program(TALUS_PYTHON, words, std::string("TALUS_PROGRAM=") + program);
   int status = 0;

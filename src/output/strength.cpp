@@ -7,8 +7,11 @@
 
 #include "output/hdf5_file.h"
 #include "output/replace_file.h"
+#include "physics/laws/laws.h"
 #include "physics/laws/strength_by_place.h"
+#include "scene/body_source.h"
 #include "scene/reader.h"
+#include "scene/scene.h"
 
 namespace talus {
 namespace {
@@ -38,21 +41,13 @@ void add_lines(const std::string &body, const Law &law, std::vector<StrengthLine
     for (double decade = 1e3; decade < 1e6; decade *= 10)
       for (const double step : {1, 2, 5}) suctions.push_back(step * decade);
   if (reads_suction(law)) suctions.push_back(1e6);
-  const bool softens = std::visit(
-      [](const auto &one) {
-        if constexpr (requires { one.softens(); }) return one.softens();
-        return false;
-      },
-      law);
   for (const bool residual : {false, true})
     for (const double suction : suctions) {
       StrengthLine line{body, residual, suction, 0, 0};
-      const bool found = std::visit(
-          [&](const auto &one) {
-            return find_line(one, residual ? endless : 0, suction, &line.slope, &line.intercept);
-          },
-          law);
-      if (found && (softens || !residual)) lines.push_back(line);
+      const bool found = law.visit([&](const auto &one) {
+        return find_line(one, residual ? endless : 0, suction, &line.slope, &line.intercept);
+      });
+      if (found && (softens(law) || !residual)) lines.push_back(line);
     }
 }
 

@@ -6,6 +6,7 @@
 
 #include "base/local_numbers.h"
 #include "meshes/exchange.h"
+#include "scene/body_source.h"
 
 namespace talus {
 namespace {
@@ -84,9 +85,14 @@ PetscErrorCode Body<dim>::borrow() {
   PetscFunctionBeginUser;
   PetscInt count;
   PetscCall(DMSwarmGetLocalSize(swarm_, &count));
-  const auto take = [&](const char *name, auto *&array) -> PetscErrorCode {
-    return DMSwarmGetField(swarm_, name, nullptr, nullptr, reinterpret_cast<void **>(&array));
+  const auto take = [&]<class T>(const char *name, FieldArray<T> &array) -> PetscErrorCode {
+    void *values;
+    PetscFunctionBeginUser;
+    PetscCall(DMSwarmGetField(swarm_, name, nullptr, nullptr, &values));
+    array = FieldArray<T>(values);
+    PetscFunctionReturn(0);
   };
+  arrays_ = {};
   arrays_.count = count;
   PetscCall(take("position", arrays_.position));
   PetscCall(take("velocity", arrays_.velocity));
@@ -98,15 +104,12 @@ PetscErrorCode Body<dim>::borrow() {
   PetscCall(take("stress", arrays_.stress));
   PetscCall(take("cell", arrays_.cell));
   PetscCall(take("id", arrays_.id));
-  arrays_.history = nullptr, arrays_.surface = nullptr, arrays_.cohesion_share = arrays_.friction_share = nullptr;
-  if (reads_shares(law_))
-    for (const auto &[name, array] :
-         {std::pair{"cohesion_share", &arrays_.cohesion_share}, {"friction_share", &arrays_.friction_share}})
-      PetscCall(take(name, *array));
+  if (reads_shares(law_)) {
+    PetscCall(take("cohesion_share", arrays_.cohesion_share));
+    PetscCall(take("friction_share", arrays_.friction_share));
+  }
   if (history_count_) PetscCall(take("history", arrays_.history));
-  for (int a = 0; a < 2; ++a) {
-    arrays_.fluid_mass[a] = nullptr, arrays_.fluid_velocity[a] = nullptr;
-    if (a >= fluids_) continue;
+  for (int a = 0; a < fluids_; ++a) {
     PetscCall(take(fluid_mass[a], arrays_.fluid_mass[a]));
     PetscCall(take(fluid_velocity[a], arrays_.fluid_velocity[a]));
   }
@@ -132,7 +135,7 @@ PetscErrorCode Body<dim>::sort(int cell_count) {
   PetscFunctionBeginUser;
   const int count = arrays_.count;
   if (count == 0) PetscFunctionReturn(0);
-  const auto [low, high] = std::minmax_element(arrays_.cell, arrays_.cell + count);
+  const auto [low, high] = std::minmax_element(arrays_.cell.data(), arrays_.cell.data() + count);
   const int first = *low, cells = *high - first + 1;
   start_.reserve(cell_count + 1), start_.assign(cells + 1, 0), order_.resize(count);
   for (int p = 0; p < count; ++p) ++start_[arrays_.cell[p] - first + 1];
@@ -248,6 +251,19 @@ PetscErrorCode Body<dim>::serialize(Archive &archive, const BackgroundMesh<dim> 
   }
   PetscCall(borrow());
   PetscFunctionReturn(0);
+}
+
+template <int dim>
+const std::string &Body<dim>::name() const {
+  return source_->name;
+}
+template <int dim>
+double Body<dim>::grain_density() const {
+  return source_->grain_density;
+}
+template <int dim>
+double Body<dim>::averaging_length() const {
+  return source_->averaging_length;
 }
 
 template class Body<2>;

@@ -3,6 +3,7 @@
 /// and a body has the history fields of its own law only.
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <functional>
 #include <limits>
 #include <string>
@@ -12,11 +13,14 @@
 #include "base/owned.h"
 #include "base/vec.h"
 #include "meshes/background_mesh.h"
-#include "physics/laws/laws.h"
+#include "physics/laws/lanes.h"
+#include "physics/laws/law.h"
 #include "physics/laws/stress.h"
-#include "scene/scene.h"
+#include "scene/function.h"
 
 namespace talus {
+
+struct BodySource;
 
 /// The piece of a loaded face that a particle carries (physics/boundary/surface_loads.h).
 template <int dim>
@@ -28,26 +32,43 @@ struct SurfacePiece {
   double area = 0;    ///< undeformed area [m2]; 0: the particle carries nothing
 };
 
-/// Raw arrays of a body's swarm fields, valid until particles are added, removed or migrated. One entry per local
+/// A field of a body's swarm, which one writes to through what is not const only.
+template <class T>
+class FieldArray {
+ public:
+  FieldArray() = default;
+  explicit FieldArray(void *values) : values_(static_cast<T *>(values)) {}
+  T &operator[](std::ptrdiff_t i) { return values_[i]; }
+  const T &operator[](std::ptrdiff_t i) const { return values_[i]; }
+  operator T *() { return values_; }
+  operator const T *() const { return values_; }
+  T *data() { return values_; }
+  const T *data() const { return values_; }
+
+ private:
+  T *values_ = nullptr;
+};
+
+/// The arrays of a body's swarm fields, valid until particles are added, removed or migrated. One entry per local
 /// particle.
 template <int dim>
 struct ParticleArrays {
   int count = 0;
-  Vec<dim> *position;      ///< at the last remap [m]
-  Vec<dim> *velocity;      ///< at the last remap [m/s]
-  Vec<dim> *reference;     ///< where displacement is counted from [m]
-  double *mass;            ///< [kg], in 2D per metre of thickness; of the grains alone where fluids move on their own
-  double *volume;          ///< V_p [m3]
-  double *initial_volume;  ///< V_p0 [m3]
-  double *rest_volume;     ///< without stress, gaps and dilation [m3], theory (3.9)
-  double *stress;          ///< [stress_size] Cauchy effective stress [Pa]
-  double *history;         ///< [history_size(law)] internal variables of the law
-  double *cohesion_share, *friction_share;  ///< of the law's c and phi [-]; null where the law reads none
-  double *fluid_mass[2];        ///< of liquid and gas in the pores [kg]; null where the phase model has none
-  Vec<dim> *fluid_velocity[2];  ///< their velocities [m/s]; null likewise
-  SurfacePiece<dim> *surface;   ///< [loaded faces] pieces of them; null when the scene has none
-  PetscInt *cell;               ///< local cell
-  PetscInt *id;                 ///< number that does not depend on the partition
+  FieldArray<Vec<dim>> position;   ///< at the last remap [m]
+  FieldArray<Vec<dim>> velocity;   ///< at the last remap [m/s]
+  FieldArray<Vec<dim>> reference;  ///< where displacement is counted from [m]
+  FieldArray<double> mass;  ///< [kg], in 2D per metre of thickness; of the grains alone where fluids move on their own
+  FieldArray<double> volume;                          ///< V_p [m3]
+  FieldArray<double> initial_volume;                  ///< V_p0 [m3]
+  FieldArray<double> rest_volume;                     ///< without stress, gaps and dilation [m3], theory (3.9)
+  FieldArray<double> stress;                          ///< [stress_size] Cauchy effective stress [Pa]
+  FieldArray<double> history;                         ///< [history_size(law)] internal variables of the law
+  FieldArray<double> cohesion_share, friction_share;  ///< of the law's c and phi [-]; null where the law reads none
+  FieldArray<double> fluid_mass[2];        ///< of liquid and gas in the pores [kg]; null where the phase model has none
+  FieldArray<Vec<dim>> fluid_velocity[2];  ///< their velocities [m/s]; null likewise
+  FieldArray<SurfacePiece<dim>> surface;   ///< [loaded faces] pieces of them; null when the scene has none
+  FieldArray<PetscInt> cell;               ///< local cell
+  FieldArray<PetscInt> id;                 ///< number that does not depend on the partition
 };
 
 /// Least volume of a particle whose volume is capped, as a share of its rest volume: 1/e, theory (3.9).
@@ -62,7 +83,9 @@ class Body {
   PetscErrorCode resize(PetscInt count);
 
   const BodySource &source() const { return *source_; }
-  const std::string &name() const { return source_->name; }
+  const std::string &name() const;
+  double grain_density() const;     ///< [kg/m3]
+  double averaging_length() const;  ///< of plastic strain [m]; 0: none
   const Law &law() const { return law_; }
   int history_count() const { return history_count_; }
   /// The volume closest to `volume` that a point of this rest volume may have [m3], theory (3.9): at most the cap times
@@ -82,6 +105,7 @@ class Body {
   /// Is the volume of a particle limited?
   bool capped() const { return volume_cap_ != std::numeric_limits<double>::infinity(); }
   const ParticleArrays<dim> &particles() const { return arrays_; }
+  ParticleArrays<dim> &particles() { return arrays_; }
 
   /// Orders the particles by cell, so that those of one cell are neighbours in memory.
   PetscErrorCode sort(int cell_count);
@@ -123,9 +147,7 @@ class Body {
 
 /// Particles in a cell of the body where no box asks for others.
 template <int dim>
-int particles_per_cell(const BodySource &source) {
-  return source.particles_per_cell > 0 ? source.particles_per_cell : dim == 2 ? 3 : 4;
-}
+int particles_per_cell(const BodySource &source);
 
 /// Fills `body` with particles on barycentric lattices in the cells of its regions: equal volumes that add up to the
 /// cell's, mass from density, initial velocity, displacement and stress from the scene. `mass_density(x)` is the total

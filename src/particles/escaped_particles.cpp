@@ -16,26 +16,24 @@ EscapedSums sum_of(const EscapedSums &a, const EscapedSums &b) {
 }  // namespace
 
 template <int dim>
-void EscapedParticles<dim>::enter(const Body<dim> &body, int number, const std::vector<int> &which, double time) {
+void EscapedParticles<dim>::enter(const Body<dim> &body, int number, int i, int group, double time) {
   const ParticleArrays<dim> &p = body.particles();
-  for (const int i : which) {
-    EscapedParticle<dim> one{.time = time, .id = p.id[i], .body = number, .mass = p.mass[i]};
-    one.position = p.position[i], one.velocity = p.velocity[i];
-    EscapedSums with{.particles = 1, .mass = p.mass[i]};
-    for (int d = 0; d < dim; ++d) {
-      one.momentum[d] = p.mass[i] * p.velocity[i][d];
-      with.energy += p.mass[i] * p.velocity[i][d] * p.velocity[i][d] / 2;
-    }
-    with.energy += p.volume[i] * stored_energy<dim>(body.law(), &p.stress[i * stress_size<dim>]);
-    for (int a = 0; a < 2; ++a) {
-      if (!p.fluid_mass[a]) continue;
-      with.fluid_mass[a] = one.fluid_mass[a] = p.fluid_mass[a][i];
-      for (int d = 0; d < dim; ++d) one.momentum[d] += p.fluid_mass[a][i] * p.fluid_velocity[a][i][d];
-    }
-    for (int d = 0; d < dim; ++d) with.momentum[d] = one.momentum[d];
-    list_.push_back(one);
-    entered_ = sum_of(entered_, with);
+  EscapedParticle<dim> one{.time = time, .id = p.id[i], .body = number, .group = group, .mass = p.mass[i]};
+  one.position = p.position[i], one.velocity = p.velocity[i];
+  EscapedSums with{.particles = 1, .mass = p.mass[i]};
+  for (int d = 0; d < dim; ++d) {
+    one.momentum[d] = p.mass[i] * p.velocity[i][d];
+    with.energy += p.mass[i] * p.velocity[i][d] * p.velocity[i][d] / 2;
   }
+  with.energy += p.volume[i] * stored_energy<dim>(body.law(), &p.stress[i * stress_size<dim>]);
+  for (int a = 0; a < 2; ++a) {
+    if (!p.fluid_mass[a]) continue;
+    with.fluid_mass[a] = one.fluid_mass[a] = p.fluid_mass[a][i];
+    for (int d = 0; d < dim; ++d) one.momentum[d] += p.fluid_mass[a][i] * p.fluid_velocity[a][i][d];
+  }
+  for (int d = 0; d < dim; ++d) with.momentum[d] = one.momentum[d];
+  list_.push_back(one);
+  entered_ = sum_of(entered_, with);
 }
 
 template <int dim>

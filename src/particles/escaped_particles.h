@@ -23,6 +23,7 @@ template <int dim>
 struct EscapedParticle {
   double time = 0;             ///< [s]
   long long id = 0, body = 0;  ///< its number, and that of its body
+  long long group = -1;        ///< of faces by which it left, a number of BackgroundMesh::group_names; -1: no name
   double mass = 0;             ///< [kg]
   double fluid_mass[2]{};      ///< of liquid and gas [kg]
   Vec<dim> position{};         ///< at the boundary of the mesh where it left [m]
@@ -33,8 +34,8 @@ struct EscapedParticle {
 template <int dim>
 class EscapedParticles {
  public:
-  /// Enters the particles `which` of this rank, while the body still has them.
-  void enter(const Body<dim> &body, int number, const std::vector<int> &which, double time);
+  /// Enters a particle of this rank, while the body still has it.
+  void enter(const Body<dim> &body, int number, int particle, int group, double time);
   /// Adds what was entered since the last call, on any rank, to the sums, and returns it. Collective.
   EscapedSums settle(MPI_Comm comm);
 

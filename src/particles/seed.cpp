@@ -6,6 +6,7 @@
 #include "meshes/locate.h"
 #include "particles/body.h"
 #include "physics/laws/strength_by_place.h"
+#include "scene/body_source.h"
 
 namespace talus {
 namespace {
@@ -139,7 +140,7 @@ void seed(Body<dim> &body, const BackgroundMesh<dim> &mesh, int id_stride,
   for (int cell : cells) count += static_cast<PetscInt>(points_in(cell).size());
   PetscCallVoid(body.resize(count));
 
-  const ParticleArrays<dim> &p = body.particles();
+  ParticleArrays<dim> &p = body.particles();
   const StrengthByPlace strength(source.law, body.law());
   int i = 0;
   for (int cell : cells) {
@@ -173,6 +174,13 @@ void seed(Body<dim> &body, const BackgroundMesh<dim> &mesh, int id_stride,
   }
 }
 
+template <int dim>
+int particles_per_cell(const BodySource &source) {
+  return source.particles_per_cell > 0 ? source.particles_per_cell : dim == 2 ? 3 : 4;
+}
+
+template int particles_per_cell<2>(const BodySource &);
+template int particles_per_cell<3>(const BodySource &);
 template void seed<2>(Body<2> &, const BackgroundMesh<2> &, int, const std::function<double(const Vec<2> &)> &);
 template void seed<3>(Body<3> &, const BackgroundMesh<3> &, int, const std::function<double(const Vec<3> &)> &);
 

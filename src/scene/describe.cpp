@@ -7,7 +7,7 @@
 
 #include "scene/quantity.h"
 #include "scene/reader.h"
-#include "scene/scene.h"
+#include "scene/tables.h"
 #include "scene/usual.h"
 #include "scene/words.h"
 

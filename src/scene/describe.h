@@ -4,6 +4,7 @@
 #include <initializer_list>
 #include <iosfwd>
 #include <string>
+#include <tuple>
 #include <type_traits>
 #include <utility>
 #include <variant>
@@ -60,6 +61,8 @@ class Describer {
   template <class Enum>
   void choice(const char *key, Enum value,
               std::initializer_list<std::pair<const char *, std::type_identity_t<Enum>>> choices, const char *meaning);
+  template <class Variant>
+  void one_of(const char *key, const Variant &value, const char *meaning);
   void point(const char *key, const std::vector<double> &value, Unit unit, const char *meaning);
   void point(const char *key, const std::vector<double> &value, Unit unit, const Usual &usual, const char *meaning);
   void water_table(const char *key, const WaterTable &value, Unit unit, const char *meaning);
@@ -142,18 +145,36 @@ void Describer::list(const char *key, const std::vector<Struct> &, const char *m
   add(Block{"[[" + path + "]]", path + ".N", meaning, "", {}}, Struct{});
 }
 
+/// The same with what titles of blocks begin with.
 template <class Variant>
-void describe_one_of(Describer &describer, const std::string &path, const char *key) {
+void describe_kinds(Describer &describer, const std::string &title, const std::string &path, const char *key) {
   const auto describe = [&]<class Kind>(std::type_identity<Kind>) {
     std::string meaning = "selects the keys of this block";
     if constexpr (requires { Kind::meaning; }) meaning = Kind::meaning;
     const std::string quoted = std::string("\"") + Kind::name + "\"";
     const Describer::Key chooser{path + "." + key, quoted, "", meaning};
-    describer.add({"[" + path + "] " + key + " = " + quoted, path, "", Kind::name, {chooser}}, Kind{});
+    describer.add({title + key + " = " + quoted, path, "", Kind::name, {chooser}}, Kind{});
   };
   [&]<class... Kind>(std::type_identity<std::variant<Kind...>>) {
     (describe(std::type_identity<Kind>{}), ...);
   }(std::type_identity<Variant>{});
+}
+
+template <class Variant>
+void describe_one_of(Describer &describer, const std::string &path, const char *key) {
+  describe_kinds<Variant>(describer, "[" + path + "] ", path, key);
+}
+
+template <class Variant>
+void Describer::one_of(const char *key, const Variant &, const char *meaning) {
+  std::string names, first;
+  [&]<class... Kind>(std::type_identity<std::variant<Kind...>>) {
+    ((names += (names.empty() ? "" : ", ") + std::string(Kind::name)), ...);
+    first = std::get<0>(std::tuple{Kind::name...});
+  }(std::type_identity<Variant>{});
+  line(key, names, first, meaning);
+  const Block here = blocks_[current_];  // a copy: blocks are added
+  describe_kinds<Variant>(*this, here.title + (here.kind.empty() ? " " : ", "), here.path, key);
 }
 
 }  // namespace talus

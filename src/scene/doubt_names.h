@@ -7,18 +7,20 @@ namespace talus {
 
 /// Keys with a usual range, and after `young_modulus` relations between things; between blanks.
 inline constexpr std::string_view doubt_names =
-    " adhesion air_entry attraction averaging_length bulk_modulus cohesion compression_slope critical_stress_ratio"
+    " adhesion air_entry attraction averaging_length baseline bulk_modulus cohesion compression_slope"
+    " critical_stress_ratio"
     " damping decay_suction density dilation_angle displacement_tolerance drying_suction duration energy_ratio"
     " excess exponent failure_speed failure_time floor force_ratio fraction friction_angle gas_permeability"
-    " grain_density grain_size gravity heat_capacity hydraulic_conductivity inertial_number inflow intensity"
-    " iterations k0 limit limiting_friction load_steps particles_per_cell permeability pic_fraction poisson_ratio"
+    " grain_density grain_size gravity ground_damping ground_frequency heat_capacity high_pass hydraulic_conductivity"
+    " inertial_number inflow intensity iterations k0 limit limiting_friction load_steps particles_per_cell"
+    " peak permeability pic_fraction poisson_ratio"
     " pore_pressure_ratio pore_size_index porosity preconsolidation_pressure pressure reference_size"
     " reference_suction relaxation residual_cohesion residual_dilation_angle residual_friction_angle"
-    " residual_saturation rest_speed saturated_unit_weight seismic_coefficient shape shape_factor shear_modulus"
+    " residual_saturation rest_speed saturated_unit_weight scale seismic_coefficient shape shape_factor shear_modulus"
     " smallest_step solid_density static_friction step_error storage suction suction_cohesion swelling_slope"
     " tension_cutoff thermal_conductivity thermal_pressurisation thickness tolerance unit_weight velocity_tolerance"
     " viscosity void_ratio volume_cap yield_stress young_modulus brittle cavitation changing_table coarse_cells"
-    " dry_boundary dry_pond early_suction excess_alone faces_left film flooding free_base free_side gravity_ramp"
+    " drift dry_boundary dry_pond early_suction excess_alone faces_left film flooding free_base free_side gravity_ramp"
     " lasting_rain late_load mesh_end mesh_units nodal_locking open_water plastic_strain pond pore_flow"
     " pore_volume_cap relative_permeability sealed_ground soft_water steep_face stiffness strength thin_body"
     " undrained_stage undrained_strength void water_table ";

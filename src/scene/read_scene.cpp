@@ -1,15 +1,15 @@
 /// Reading a scene as a whole, and what its keys demand of one another.
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iterator>
-#include <numeric>
 #include <sstream>
 #include <tuple>
 
 #include "scene/doubt_names.h"
 #include "scene/quantity.h"
 #include "scene/reader.h"
-#include "scene/scene.h"
+#include "scene/tables.h"
 #include "scene/words.h"
 
 namespace talus {
@@ -31,21 +31,21 @@ class Checks {
     for (BoundarySource &boundary : scene_.boundary)
       if (boundary.group.empty()) boundary.group = {boundary.name};
     water();
-    for (OutputPoint &point : scene_.output.point) {
+    for (OutputPoint &point : scene_.output->point) {
       into_middle(point.position);
       components("output.point." + point.name + ".position", point.position.size(), scene_.dimension, "coordinates");
     }
-    for (OutputLine &line : scene_.output.line) {
+    for (OutputLine &line : scene_.output->line) {
       for (std::vector<double> &point : line.points) into_middle(point);
       followed_line(line);
     }
-    for (std::size_t i = 0; i < scene_.stage.size(); ++i) {
+    for (std::size_t i = 0; i < scene_.stage.size(); ++i)
       if (scene_.stage[i].name.empty()) scene_.stage[i].name = std::to_string(i);
-      stage(scene_.stage[i], "stage." + std::to_string(i));
-    }
+    for (std::size_t i = 0; i < scene_.stage.size(); ++i) stage(scene_.stage[i], "stage." + std::to_string(i));
     bodies_that_come_and_go();
+    ground_motion();
     factor_of_safety();
-    if (scene_.start_from.reset_displacement && scene_.start_from.folder.empty())
+    if (scene_.start_from->reset_displacement && scene_.start_from->folder.empty())
       reader_.complain(
           "start_from.reset_displacement",
           "has no effect without start_from.folder, the results of the run at whose state this one starts");
@@ -59,9 +59,22 @@ class Checks {
  private:
   /// A point of the section lies in the middle of the body that is drawn out of it.
   void into_middle(std::vector<double> &point) const {
-    const MeshSource &mesh = scene_.mesh;
+    const MeshSource &mesh = *scene_.mesh;
     if (scene_.dimension == 3 && !mesh.section.empty() && point.size() == 2)
       point.push_back((mesh.thickness > 0 ? mesh.thickness : mesh.size) / 2);
+  }
+
+  void ground_motion() const {
+    const auto shakes = [](const Stage &stage) { return stage.shakes(); };
+    if (!scene_.earthquake.empty() && std::ranges::none_of(scene_.stage, shakes))
+      reader_.complain("earthquake", "has no effect: set earthquake = true in a stage of motion");
+    for (std::size_t i = 0; i < scene_.earthquake.size(); ++i) {
+      const std::vector<double> &direction = scene_.earthquake[i].direction;
+      const std::string path = "earthquake." + std::to_string(i) + ".direction";
+      if (!direction.empty()) components(path, direction.size(), scene_.dimension, "components");
+      if (!direction.empty() && std::ranges::all_of(direction, [](double one) { return one == 0; }))
+        reader_.complain(path, "must not be zero");
+    }
   }
 
   void followed_line(const OutputLine &line) const {
@@ -87,7 +100,7 @@ class Checks {
   }
 
   void mesh() const {
-    const MeshSource &mesh = scene_.mesh;
+    const MeshSource &mesh = *scene_.mesh;
     if (host_mesh_) {
       if (!mesh.file.empty() || !mesh.section.empty() || !mesh.terrain.file.empty())
         reader_.complain("mesh",
@@ -120,7 +133,7 @@ class Checks {
   }
 
   void terrain() const {
-    const MeshSource &mesh = scene_.mesh;
+    const MeshSource &mesh = *scene_.mesh;
     const TerrainSource &t = mesh.terrain;
     if (scene_.up != Up::z)
       reader_.complain("mesh.terrain.file", "counts elevations along z: set dimension = 3 and up = \"z\"");
@@ -179,14 +192,14 @@ class Checks {
     }
   }
 
-  bool mesh_is_terrain() const { return !scene_.mesh.terrain.file.empty(); }
+  bool mesh_is_terrain() const { return !scene_.mesh->terrain.file.empty(); }
 
   /// Does gravity act against up, as elevations are counted, or not at all?
   bool gravity_is_down() const { return -scene_.gravity[scene_.vertical()] >= (1 - 1e-12) * scene_.gravity_size(); }
 
   /// Density, or porosity and grain density, that follow from unit weights.
   void unit_weight(const std::string &path, BodySource &body) const {
-    const double above = body.unit_weight, below = body.saturated_unit_weight, water = scene_.water.density;
+    const double above = body.unit_weight, below = body.saturated_unit_weight, water = scene_.water->density;
     if (above == 0 && below == 0) return;
     const char *given = above > 0 ? ".unit_weight" : ".saturated_unit_weight";
     const double g = scene_.gravity_size();
@@ -264,9 +277,9 @@ class Checks {
 
   void weight(const std::string &path, const BodySource &body) const {
     const bool grains = body.porosity > 0 && body.grain_density > 0;
-    const bool seeps = scene_.phases == PhaseModel::drained &&
-                       std::any_of(scene_.stage.begin(), scene_.stage.end(),
-                                   [](const Stage &stage) { return stage.kind == StageKind::seepage; });
+    const bool seeps =
+        scene_.phases == PhaseModel::drained &&
+        std::any_of(scene_.stage.begin(), scene_.stage.end(), [](const Stage &stage) { return stage.seeps(); });
     if ((fluids_move(scene_.phases) || seeps) && !grains)
       reader_.complain(path,
                        "needs porosity and grain_density, since pore water moves (phases = \"" + phases() + "\")");
@@ -278,7 +291,7 @@ class Checks {
   }
 
   void prescribed_pressure(const std::string &key) const {
-    const auto flows = [](const Stage &stage) { return water_flows(stage.kind); };
+    const auto flows = [](const Stage &stage) { return stage.water_flows(); };
     if (scene_.phases != PhaseModel::drained || std::any_of(scene_.stage.begin(), scene_.stage.end(), flows))
       reader_.complain(key, "prescribes the pore pressure, which needs phases = \"drained\" and no seepage stage");
   }
@@ -332,35 +345,35 @@ class Checks {
 
   void water() const {
     const bool drained = scene_.phases == PhaseModel::drained, dry = scene_.phases == PhaseModel::dry;
-    if (drained && !scene_.water.given)
+    if (drained && !scene_.water->given)
       reader_.complain(
           "phases",
           "needs pore water: add a table [water] with its table of points [x, elevation], or an empty one for none");
-    if (scene_.gas.given && scene_.phases != PhaseModel::three_phase)
+    if (scene_.gas->given && scene_.phases != PhaseModel::three_phase)
       reader_.complain("gas", "has no effect, since phases = \"" + phases() +
                                   "\" has no gas that moves; set phases = \"three-phase\"");
-    if (dry && scene_.water.given)
+    if (dry && scene_.water->given)
       reader_.complain("water", "has no effect, since phases = \"dry\" has no pore water; set phases = \"drained\"");
-    table("water.table", scene_.water.table);
-    const bool seeps = std::any_of(scene_.stage.begin(), scene_.stage.end(),
-                                   [](const Stage &stage) { return water_flows(stage.kind); });
-    if (scene_.water.suction.given() && scene_.phases == PhaseModel::saturated)
+    table("water.table", scene_.water->table);
+    const bool seeps =
+        std::any_of(scene_.stage.begin(), scene_.stage.end(), [](const Stage &stage) { return stage.water_flows(); });
+    if (scene_.water->suction.given() && scene_.phases == PhaseModel::saturated)
       reader_.complain("water.suction",
                        "has no effect, since phases = \"saturated\" keeps all pores full of water under pressure; set "
                        "phases = \"unsaturated\", or leave it out");
-    if (scene_.water.suction.given() && drained && !seeps)
+    if (scene_.water->suction.given() && drained && !seeps)
       reader_.complain("water.suction",
                        "has no effect in a drained scene without a seepage stage: give suction as water.excess below "
                        "zero, or leave it out");
     const bool has_table =
-        scene_.water.table.given() ||
+        scene_.water->table.given() ||
         std::any_of(scene_.body.begin(), scene_.body.end(), [](const BodySource &b) { return b.water_table.given(); });
-    if (!has_table && !(scene_.water.level.constant() && scene_.water.level(0) == 0))
+    if (!has_table && !(scene_.water->level.constant() && scene_.water->level(0) == 0))
       reader_.complain("water.level", "has no effect without a water table, which it raises: give water.table");
   }
 
   void factor_of_safety() const {
-    const FactorSource &search = scene_.factor_of_safety;
+    const FactorSource &search = *scene_.factor_of_safety;
     for (const auto &[key, points, least] :
          {std::tuple{"within", &search.within, std::size_t(3)}, {"along", &search.along, std::size_t(2)}}) {
       const std::string path = std::string("factor_of_safety.") + key;
@@ -397,96 +410,97 @@ class Checks {
   void stage(const Stage &stage, const std::string &path) const {
     if (has_control_characters(stage.name))
       reader_.complain(path + ".name", "must be a name without line breaks and other control characters");
-    bodies_of(stage, path);
-    const bool drained = scene_.phases == PhaseModel::drained;
-    if (water_flows(stage.kind) && scene_.phases != PhaseModel::saturated && scene_.phases != PhaseModel::unsaturated &&
-        !(drained && stage.kind == StageKind::seepage))
+    if (const StaticKeys *keys = stage.finite_elements()) bodies_of(*keys, path);
+    if (stage.water_flows()) flow(stage, path);
+    if (!stage.seismic_coefficient().empty()) earthquake(stage.seismic_coefficient(), path + ".seismic_coefficient");
+    if (stage.shakes() && scene_.earthquake.empty())
+      reader_.complain(path + ".earthquake", "needs a motion: add [[earthquake]]");
+    if (stage.shakes() && stage.damping() > 0)
+      reader_.complain(path + ".damping",
+                       "must be 0 in an earthquake: local damping takes a share of all motion, whatever its frequency");
+    if (stage.begins_at_rest() && !gravity_is_down())
+      reader_.complain(path + ".initial_stress",
+                       "needs gravity along -" + up() + ", since it counts the soil above along " + up() +
+                           "; give the stress by body.NAME.stress where the axes are inclined");
+    if (stage.finds_factor()) factor(stage, path);
+    const auto *fails = stage.motion() ? std::get_if<AtFailure>(&stage.motion()->until) : nullptr;
+    if (fails) failure(*fails, path);
+  }
+
+  /// It judges what finite elements have found, and its results have the name of the stage where there are several.
+  void factor(const Stage &stage, const std::string &path) const {
+    const auto here = std::make_reverse_iterator(scene_.stage.begin() + (&stage - scene_.stage.data()));
+    const auto before = std::find_if_not(here, scene_.stage.rend(), std::mem_fn(&Stage::finds_factor));
+    if (before == scene_.stage.rend())
       reader_.complain(path + ".kind",
-                       "needs pore water that moves: set phases = \"saturated\" or \"unsaturated\"" +
-                           std::string(stage.kind == StageKind::seepage
-                                           ? " (or \"drained\", whose pressure is then computed by seepage)"
-                                           : "") +
-                           ", not \"" + phases() + "\"");
-    if (drained && water_flows(stage.kind) && !(scene_.water.excess.constant() && scene_.water.excess(0) == 0))
+                       "needs a stage before it, whose soil it judges: put one of kind = \"quasi_static\" first");
+    if (!before->is_static())
+      reader_.complain(path + ".kind",
+                       "cannot judge the motion of the stage before it: put a stage of kind = "
+                       "\"quasi_static\" between them");
+    const auto same = [&](const Stage &other) { return other.finds_factor() && other.name == stage.name; };
+    if (stage.name.find('/') != std::string::npos || std::ranges::count_if(scene_.stage, same) > 1)
+      reader_.complain(path + ".name",
+                       "must be a name of its own without /, since results of the stage are factor_of_safety_NAME.csv");
+  }
+
+  void flow(const Stage &stage, const std::string &path) const {
+    const bool drained = scene_.phases == PhaseModel::drained;
+    if (scene_.phases != PhaseModel::saturated && scene_.phases != PhaseModel::unsaturated &&
+        !(drained && stage.seeps()))
+      reader_.complain(
+          path + ".kind",
+          "needs pore water that moves: set phases = \"saturated\" or \"unsaturated\"" +
+              std::string(stage.seeps() ? " (or \"drained\", whose pressure is then computed by seepage)" : "") +
+              ", not \"" + phases() + "\"");
+    if (drained && !(scene_.water->excess.constant() && scene_.water->excess(0) == 0))
       reader_.complain("water.excess",
                        "cannot be combined with seepage, which computes the pressure: give pressures, heads or fluxes "
                        "at [boundary.NAME]");
-    if (stage.kind == StageKind::consolidation && scene_.quasi_static.elements != Elements::quadratic)
+    if (stage.soil_moves() && scene_.quasi_static->elements != Elements::quadratic)
       reader_.complain("quasi_static.elements",
                        "must be \"quadratic\" for consolidation: displacement of first order with pressure of first "
                        "order is not stable");
-    if (stage.kind == StageKind::consolidation && scene_.quasi_static.linear_solver == LinearSolver::iterative)
+    if (stage.soil_moves() && scene_.quasi_static->linear_solver == LinearSolver::iterative)
       reader_.complain(
           "quasi_static.linear_solver",
           "must not be \"iterative\" for consolidation: its matrix is indefinite and is factorised; leave it out");
-    if (!stage.seismic_coefficient.empty()) {
-      components(path + ".seismic_coefficient", stage.seismic_coefficient.size(), scene_.dimension, "components");
-      if (water_flows(stage.kind))
-        reader_.complain(path + ".seismic_coefficient",
-                         "belongs to dynamic and quasi_static stages, not to those in which pore water flows");
-      if (scene_.gravity_size() == 0)
-        reader_.complain(path + ".seismic_coefficient", "is a part of gravity, and the scene has none: give gravity");
-      for (const double k : stage.seismic_coefficient)
-        if (!(std::abs(k) <= 2))
-          reader_.complain(path + ".seismic_coefficient", "must have components from -2 to 2, parts of gravity");
-    }
-    if (stage.steady && stage.kind != StageKind::seepage)
-      reader_.complain(path + ".steady", "belongs to seepage: set kind = \"seepage\"");
-    if (is_static(stage.kind)) {
-      const std::string no = "has no effect in a quasi-static stage; leave it out";
-      if (stage.until != StopWhen::duration) reader_.complain(path + ".until", no);
-      if (stage.damping > 0) reader_.complain(path + ".damping", no);
-      if (stage.gravity_ramp > 0) reader_.complain(path + ".gravity_ramp", no);
-      if (stage.initial_stress == InitialStress::k0 && !gravity_is_down())
-        reader_.complain(path + ".initial_stress",
-                         "needs gravity along -" + up() + ", since it counts the soil above along " + up() +
-                             "; give the stress by body.NAME.stress where the axes are inclined");
-    } else {
-      const Stage usual;
-      for (const auto &[key, given] : {std::pair{".initial_stress", stage.initial_stress != usual.initial_stress},
-                                       {".load_steps", stage.load_steps != usual.load_steps},
-                                       {".when_lost", stage.when_lost != usual.when_lost}})
-        if (given) reader_.complain(path + key, "belongs to quasi-static stages: set kind = \"quasi_static\"");
-    }
-    criterion(stage, path);
-    if (stage.until != StopWhen::failure) return;
-    std::vector<std::string> points;
-    for (const OutputPoint &point : scene_.output.point) points.push_back(point.name);
-    if (points.empty())
-      reader_.complain(path, "ends by failure of a point, but the scene has no points: add [output.point.NAME]");
-    if (std::find(points.begin(), points.end(), stage.failure_point) == points.end())
-      reader_.complain(path + ".failure_point",
-                       "must name a point of [output.point.NAME]; " + suggestion(stage.failure_point, points));
   }
 
-  /// Keys of a criterion that the stage does not have.
-  void criterion(const Stage &stage, const std::string &path) const {
-    const Stage usual;
-    using enum StopWhen;
-    for (const auto &[key, given, until, name] :
-         {std::tuple{".force_ratio", stage.force_ratio != usual.force_ratio, equilibrium, "equilibrium"},
-          {".energy_ratio", stage.energy_ratio != usual.energy_ratio, equilibrium, "equilibrium"},
-          {".rest_speed", stage.rest_speed != usual.rest_speed, rest, "rest"},
-          {".failure_point", stage.failure_point != usual.failure_point, failure, "failure"},
-          {".failure_speed", stage.failure_speed != usual.failure_speed, failure, "failure"},
-          {".failure_time", stage.failure_time != usual.failure_time, failure, "failure"}})
-      if (given && stage.until != until)
-        reader_.complain(path + key, std::string("has no effect without until = \"") + name +
-                                         "\": give that criterion to the stage, or leave the key out");
+  void earthquake(const std::vector<double> &coefficient, const std::string &path) const {
+    components(path, coefficient.size(), scene_.dimension, "components");
+    if (scene_.gravity_size() == 0)
+      reader_.complain(path, "is a part of gravity, and the scene has none: give gravity");
+    for (const double k : coefficient)
+      if (!(std::abs(k) <= 2)) reader_.complain(path, "must have components from -2 to 2, parts of gravity");
+  }
+
+  void failure(const AtFailure &until, const std::string &path) const {
+    std::vector<std::string> points;
+    for (const OutputPoint &point : scene_.output->point) points.push_back(point.name);
+    if (points.empty())
+      reader_.complain(path, "ends by failure of a point, but the scene has no points: add [output.point.NAME]");
+    if (std::find(points.begin(), points.end(), until.failure_point) == points.end())
+      reader_.complain(path + ".failure_point",
+                       "must name a point of [output.point.NAME]; " + suggestion(until.failure_point, points));
   }
 
   /// A stage adds bodies that are not there, and removes bodies that are. A body that some stage adds is absent before.
   void bodies_that_come_and_go() const {
     std::vector<std::string> absent;
-    for (const Stage &stage : scene_.stage) absent.insert(absent.end(), stage.add.begin(), stage.add.end());
+    for (const Stage &stage : scene_.stage)
+      if (const StaticKeys *keys = stage.finite_elements())
+        absent.insert(absent.end(), keys->add.begin(), keys->add.end());
     for (std::size_t i = 0; i < scene_.stage.size(); ++i) {
       const std::string path = "stage." + std::to_string(i);
-      for (const std::string &name : scene_.stage[i].add) {
+      const StaticKeys *keys = scene_.stage[i].finite_elements();
+      if (!keys) continue;
+      for (const std::string &name : keys->add) {
         if (std::find(absent.begin(), absent.end(), name) == absent.end())
           reader_.complain(path + ".add", "adds body." + name + ", which is there already: leave it out");
         std::erase(absent, name);
       }
-      for (const std::string &name : scene_.stage[i].remove) {
+      for (const std::string &name : keys->remove) {
         if (std::find(absent.begin(), absent.end(), name) != absent.end())
           reader_.complain(path + ".remove", "removes body." + name +
                                                  ", which is not there: leave it out (a body that a stage adds is "
@@ -497,17 +511,14 @@ class Checks {
   }
 
   /// Bodies that come and go with a stage.
-  void bodies_of(const Stage &stage, const std::string &path) const {
+  void bodies_of(const StaticKeys &keys, const std::string &path) const {
     std::vector<std::string> bodies;
     for (const BodySource &body : scene_.body) bodies.push_back(body.name);
-    for (const auto &[key, named] : {std::pair{".add", &stage.add}, {".remove", &stage.remove}}) {
-      if (!named->empty() && !is_static(stage.kind))
-        reader_.complain(path + key, "belongs to quasi-static stages: set kind = \"quasi_static\"");
+    for (const auto &[key, named] : {std::pair{".add", &keys.add}, {".remove", &keys.remove}})
       for (const std::string &name : *named)
         if (std::find(bodies.begin(), bodies.end(), name) == bodies.end())
           reader_.complain(path + key,
                            "must name bodies; there is no [body." + name + "]; " + suggestion(name, bodies));
-    }
   }
 
   /// Opposite corners, the smaller coordinates first.
@@ -553,36 +564,6 @@ Scene parse(const std::string &text, const std::string &file, const std::vector<
 }
 
 }  // namespace
-
-double Scene::gravity_size() const {
-  return std::sqrt(std::inner_product(gravity.begin(), gravity.end(), gravity.begin(), 0.));
-}
-
-std::array<double, 3> Scene::upward() const {
-  std::array<double, 3> direction{};
-  direction[vertical()] = 1;
-  if (const double g = gravity_size(); g > 0)
-    for (std::size_t d = 0; d < gravity.size(); ++d) direction[d] = -gravity[d] / g;
-  return direction;
-}
-
-std::array<double, 3> Scene::acceleration_in(const Stage &one) const {
-  std::array<double, 3> acceleration{};
-  std::copy(gravity.begin(), gravity.end(), acceleration.begin());
-  for (std::size_t d = 0; d < one.seismic_coefficient.size(); ++d)
-    acceleration[d] += gravity_size() * one.seismic_coefficient[d];
-  return acceleration;
-}
-
-std::string Scene::function_fault() const { return root ? root->function_fault() : ""; }
-void Scene::forget_function_faults() const {
-  if (root) root->forget_function_faults();
-}
-
-void Scene::complain(const std::string &key_path, const std::string &sentence) const {
-  if (root) root->complain(key_path, sentence);
-  throw SceneError(key_path + " " + sentence);  // a scene that a program filled in itself
-}
 
 Scene parse_scene(const std::string &text, const std::string &file, const std::vector<std::string> &overrides) {
   return parse(text, file, overrides, false);

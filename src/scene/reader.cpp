@@ -385,6 +385,8 @@ std::string TableReader::misspelt(const std::string &key) const {
 void TableReader::refuse_unknown_keys() const {
   for (const auto &[key, node] : in_file_order(*static_cast<const toml::table *>(table_))) {
     if (std::find(known_.begin(), known_.end(), key) != known_.end()) continue;
+    if (const auto other = elsewhere_.find(std::string(key)); other != elsewhere_.end())
+      complain(key, "belongs to " + other->second + ": set that, or leave the key out");
     throw SceneError(place(document_->file, *node, false) + ": " + path_to(key) + " is no known key; " +
                      suggestion(key, known_));
   }

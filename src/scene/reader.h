@@ -69,6 +69,10 @@ class TableReader {
   template <class Enum>
   void choice(const char *key, Enum &value,
               std::initializer_list<std::pair<const char *, std::type_identity_t<Enum>>> choices, const char *meaning);
+  /// One of the alternatives of a variant by its `name`, whose fields are keys of this table; the first one if the
+  /// table does not say which. Keys of the others are refused with the name of theirs. Defined in one_of.h.
+  template <class Variant>
+  void one_of(const char *key, Variant &value, const char *meaning);
   /// A list of numbers or of quantities of any unit, in SI; a single one gives a vector of size 1.
   void quantities(const char *key, std::vector<double> &value, const char *meaning);
   /// A list of quantities; a single one gives a vector of size 1.
@@ -156,6 +160,7 @@ class TableReader {
   const void *table_;  ///< a toml::table of the document; toml++ stays inside the reader's own files
   std::string path_;   ///< of this table from the root: body.sand, stage.0
   std::vector<std::string> known_;
+  std::map<std::string, std::string> elsewhere_;  ///< key of another kind: that kind, `kind = "seepage"`
   bool rest_deferred_ = false;
 };
 

@@ -6,7 +6,7 @@
 
 #include "base/archive.h"
 #include "meshes/partition.h"
-#include "scene/scene.h"
+#include "scene/balance_ranks.h"
 
 namespace talus {
 

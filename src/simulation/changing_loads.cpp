@@ -5,7 +5,11 @@
 #include <utility>
 
 #include "physics/boundary/boundary.h"
+#include "scene/body_source.h"
+#include "scene/boundary_source.h"
 #include "scene/reader.h"
+#include "scene/scene.h"
+#include "scene/water_source.h"
 
 namespace talus {
 
@@ -16,8 +20,8 @@ std::vector<ChangingLoad> changing_loads(const Scene &scene) {
   };
   for (const BoundarySource &source : scene.boundary)
     add("boundary." + source.name, read_boundary(source.kind).changes);
-  add("water.level", scene.water.level.changes());
-  add("water.excess", scene.water.excess.changes());
+  add("water.level", scene.water->level.changes());
+  add("water.excess", scene.water->excess.changes());
   for (const BodySource &body : scene.body) {
     std::vector<TimeSpan> when;
     for (const Function &component : body.body_acceleration)

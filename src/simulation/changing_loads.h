@@ -4,9 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "scene/scene.h"
+#include "scene/function.h"
 
 namespace talus {
+
+struct Scene;
 
 /// A load, a support or a strength that functions of time give.
 struct ChangingLoad {

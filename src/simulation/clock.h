@@ -6,7 +6,8 @@
 
 namespace talus {
 
-/// Stage of the mechanism of a factor of safety, the last row of the history and the last snapshot.
+/// Stage of the mechanism of a factor of safety, the last row of the history and the last snapshot of a run that ends
+/// with one.
 inline constexpr const char *strength_reduction = "strength reduction";
 
 struct Clock {
@@ -17,6 +18,11 @@ struct Clock {
   bool hold_loads = false;  ///< the load time stands still
   std::string stage;        ///< name of the present stage; empty before the first
 
+  /// A step was taken [s].
+  void advance(double step) {
+    time += step, last_step = step, ++steps;
+    if (!hold_loads) load_time += step;
+  }
   void serialize(Archive &archive) { archive.serialize("clock", time, load_time, last_step, steps, hold_loads); }
 };
 

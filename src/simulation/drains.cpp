@@ -3,6 +3,9 @@
 #include <algorithm>
 
 #include "physics/boundary/pore_conditions.h"
+#include "scene/boundary_source.h"
+#include "scene/scene.h"
+#include "scene/stage.h"
 #include "solvers/quasi_static/faces_inside.h"
 
 namespace talus {
@@ -25,11 +28,11 @@ std::vector<char> find_drains(const BackgroundMesh<dim> &mesh, const Scene &scen
 }
 
 bool water_flows_in_elements(const Scene &scene) {
-  return std::ranges::any_of(scene.stage, [](const Stage &stage) { return water_flows(stage.kind); });
+  return std::ranges::any_of(scene.stage, [](const Stage &stage) { return stage.water_flows(); });
 }
 bool water_moves_with_soil(const Scene &scene) {
   return fluids_move(scene.phases) &&
-         std::ranges::any_of(scene.stage, [](const Stage &stage) { return !is_static(stage.kind) && stage.pore_flow; });
+         std::ranges::any_of(scene.stage, [](const Stage &stage) { return !stage.is_static() && stage.pore_flow; });
 }
 
 }  // namespace

@@ -5,7 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/mesh_source.h"
 #include "scene/reader.h"
+#include "scene/scene.h"
+#include "scene/stage.h"
+#include "scene/transfer_source.h"
+#include "scene/water_source.h"
 
 namespace talus {
 
@@ -14,13 +19,13 @@ IntegratorSettings choose_integrator(const Scene &scene) {
   DeferredTable table = scene.integrator;
   const IntegratorSettings settings = read_integrator(table, phases.liquid);
   const bool by_euler = std::holds_alternative<EulerSettings>(settings);
-  if (scene.water.drag == PoreDrag::at_start && !(phases.liquid && by_euler))
+  if (scene.water->drag == PoreDrag::at_start && !(phases.liquid && by_euler))
     scene.complain("water.drag",
                    std::string("can be \"explicit\" only ") +
                        (phases.liquid ? "with integrator.kind = \"euler\": the others take drag over a step"
                                       : "where pore fluids move") +
                        "; leave it out");
-  if (scene.water.storage == PoreStorage::rate && !(phases.suction && !phases.gas && by_euler))
+  if (scene.water->storage == PoreStorage::rate && !(phases.suction && !phases.gas && by_euler))
     scene.complain("water.storage",
                    "can be \"rate\" only with phases = \"unsaturated\" and integrator.kind = \"euler\"; leave it out");
   if (!phases.liquid) return settings;
@@ -28,7 +33,7 @@ IntegratorSettings choose_integrator(const Scene &scene) {
     scene.complain("integrator.kind", "must be \"euler\", or \"arkode\" of order 3, where pore fluids move: " +
                                           problem + "; or take phases = \"dry\" or \"drained\"");
   for (size_t k = 0; k < scene.stage.size() && phases.gas; ++k)
-    if (is_static(scene.stage[k].kind))
+    if (scene.stage[k].is_static())
       scene.complain("stage." + std::to_string(k) + ".kind",
                      "must be \"dynamic\" where gas moves; quasi-static stages take any other phases");
   return settings;
@@ -46,8 +51,18 @@ int ranks_of(MPI_Comm comm) {
 template <int dim>
 long long cells_to_divide(const World<dim> &world) {
   const long long all = world.mesh.report().cells;
-  const int halvings = world.scene.mesh.halvings;
+  const int halvings = world.scene.mesh->halvings;
   return halvings == 0 ? all : (all >> dim * halvings) + all / ranks_of(world.comm);
+}
+
+/// Adds to `sum` the time that `work` takes [s].
+template <class Work>
+void timed(double &sum, Work &&work) {
+  PetscLogDouble start, end;
+  require(PetscTime(&start));
+  require(work());
+  require(PetscTime(&end));
+  sum += end - start;
 }
 
 }  // namespace
@@ -60,8 +75,19 @@ Dynamics<dim>::Dynamics(World<dim> &world, Clock &clock, const IntegratorSetting
           choose_step_bound(world.scene, world.laws, world.report(), settings, world.mesh.report().one_element_slice)),
       settings_(with_bound(settings, bound_.by)),
       integrator_(make_integrator(settings_)),
-      balancing_(world.scene.mesh.balance_ranks, ranks_of(world.comm), cells_to_divide(world), world.mesh.divisible()) {
+      balancing_(world.scene.mesh->balance_ranks, ranks_of(world.comm), cells_to_divide(world),
+                 world.mesh.divisible()) {
+  check_incoming_wave();
   check_fixed_step();
+}
+
+/// Integrators of higher order take dashpots once a step, which is of the first order: of a wave that comes in their
+/// long steps lose a sixth.
+template <int dim>
+void Dynamics<dim>::check_incoming_wave() const {
+  const auto comes_in = [](const NamedBoundary &source) { return source.kind.incoming_wave; };
+  if (std::ranges::any_of(world_.conditions.sources(), comes_in) && !std::holds_alternative<EulerSettings>(settings_))
+    world_.scene.complain("integrator.kind", "must be \"euler\" where a wave comes in (incoming_wave = true)");
 }
 
 /// A fixed step that the first state already forbids is bad input; one that a later state forbids ends the run.
@@ -88,12 +114,29 @@ void Dynamics<dim>::set_loading(const Stage &stage, double stage_time) {
 
 template <int dim>
 Verdict Dynamics<dim>::cycle(double until) {
-  require(world_.motion->begin(clock_.time));
-  require(step(until));
+  constexpr int remaps_between_sorts = 20;
+  AnySoilMotion<dim> &motion = *world_.motion;
+  require(motion.begin(clock_.time));
+  const StepBounds bounds{stable_step(), until};
+  double step = 0;
+  timed(world_.breakdown.step, [&] { return integrator_->advance(motion, clock_.time, bounds, &step); });
+  refuse_obstacle();
+  clock_.advance(step);
   const Verdict verdict = agree();
   if (verdict.broken) refuse_broken();
   just_remapped_ = remap_due_;
-  require(remap_due_ ? remap() : world_.motion->update_pore_pressures(clock_.time));
+  if (!remap_due_) {
+    require(motion.update_pore_pressures(clock_.time));
+    return verdict;
+  }
+  const bool sorting = ++since_sort_ >= remaps_between_sorts;
+  require(world_.release(clock_.time, !sorting));
+  ++remaps_;
+  if (sorting) require(world_.sort()), since_sort_ = 0;
+  double work;
+  require(world_.check_conservation(work_of_rank_, &work));
+  balancing_.remap(work);
+  timed(world_.breakdown.gather, [&] { return motion.begin(clock_.time); });
   return verdict;
 }
 
@@ -129,9 +172,9 @@ double Dynamics<dim>::critical_step() {
   return step;
 }
 
+/// The critical step of the present state [s], which a fixed step must not exceed. Collective.
 template <int dim>
-PetscErrorCode Dynamics<dim>::step(double until) {
-  PetscFunctionBeginUser;
+double Dynamics<dim>::stable_step() {
   notice_release();
   if (critical_step_ == 0 || explicit_drag())
     critical_step_ = critical_step();  // drag follows saturation from step to step
@@ -139,38 +182,32 @@ PetscErrorCode Dynamics<dim>::step(double until) {
   if (rule.fixed > rule.limit * critical_step_)
     throw RunFailure("the soil has come to cells with a critical step of " + rounded(rule.limit * critical_step_) +
                      " s, but integrator.step = " + rounded(rule.fixed) + " s; take a smaller step, or leave it out");
-  PetscLogDouble start, end;
-  double step = 0;
-  PetscCall(PetscTime(&start));
-  PetscCall(integrator_->advance(*world_.motion, clock_.time, {critical_step_ * shrink_, until}, &step));
-  PetscCall(PetscTime(&end));
-  if (const std::string cause = integrator_->obstacle(); !cause.empty()) {
-    const FilledGrid<dim> &grid = world_.motion->grid();
-    const int component = integrator_->obstructing_component();
-    const bool mine = component >= 0;
-    const Vec<dim> where = mine ? grid.position[component / dim % grid.node_count()] : Vec<dim>{};
-    const std::string particle = text_of_first(world_.comm, mine, mine ? world_.nearest_particle(where) : "");
-    throw RunFailure(cause + "; it is largest near " + place_of_first<dim>(world_.comm, mine, where) + ", at " +
-                     particle);
-  }
-  world_.breakdown.step += end - start;
-  clock_.time += step, clock_.last_step = step;
-  if (!clock_.hold_loads) clock_.load_time += step;
-  ++clock_.steps;
-  remap_due_ = world_.scene.transfer.remap_interval == 0;
-  PetscFunctionReturn(0);
+  return critical_step_ * shrink_;
+}
+
+template <int dim>
+void Dynamics<dim>::refuse_obstacle() {
+  const std::string cause = integrator_->obstacle();
+  if (cause.empty()) return;
+  const FilledGrid<dim> &grid = world_.motion->grid();
+  const int component = integrator_->obstructing_component();
+  const bool mine = component >= 0;
+  const Vec<dim> where = mine ? grid.position[component / dim % grid.node_count()] : Vec<dim>{};
+  const std::string particle = text_of_first(world_.comm, mine, mine ? world_.nearest_particle(where) : "");
+  throw RunFailure(cause + "; it is largest near " + place_of_first<dim>(world_.comm, mine, where) + ", at " +
+                   particle);
 }
 
 template <int dim>
 Verdict Dynamics<dim>::agree() {
-  const AnySoilMotion<dim> &motion = *world_.motion;
   constexpr double elsewhere = std::numeric_limits<double>::lowest();
   Vec<3> watched{};
   if (watch && !watch(&watched)) watched.fill(elsewhere);
-  double mine[9] = {motion.moved(),
-                    1 / motion.step_ratio(),
-                    motion.smallest_volume_ratio() <= 0.2 ? 1. : 0.,
-                    !(motion.speed_squared() < 1e300) ? 1. : 0.,
+  const StepMeasures &measures = world_.motion->measures();
+  double mine[9] = {measures.moved,
+                    1 / measures.step_ratio,
+                    measures.smallest_volume_ratio <= 0.2 ? 1. : 0.,
+                    !(measures.speed_squared < 1e300) ? 1. : 0.,
                     interrupted ? 1. : 0.,
                     watched[0],
                     watched[1],
@@ -188,7 +225,8 @@ Verdict Dynamics<dim>::agree() {
         "end the stage by its duration");
   const Verdict verdict{all[0], all[1], {all[5], all[6], all[7]}, all[2] > 0, all[3] > 0, all[4] > 0};
   shrink_ = 1 / verdict.shrink;
-  if (verdict.moved > world_.scene.transfer.remap_interval || verdict.inverted) remap_due_ = true;
+  const double interval = world_.scene.transfer->remap_interval;
+  remap_due_ = interval == 0 || verdict.moved > interval || verdict.inverted;
   if (remap_due_) moved_since_estimate_ += verdict.moved;
   return verdict;
 }
@@ -209,28 +247,6 @@ void Dynamics<dim>::refuse_broken() {
 }
 
 template <int dim>
-PetscErrorCode Dynamics<dim>::remap() {
-  PetscFunctionBeginUser;
-  PetscLogDouble start, end;
-  constexpr int remaps_between_sorts = 20;
-  const bool sorting = ++since_sort_ >= remaps_between_sorts;
-  PetscCall(world_.release(clock_.time, !sorting));
-  ++remaps_;
-  if (sorting) {
-    PetscCall(world_.sort());
-    since_sort_ = 0;
-  }
-  double work;
-  PetscCall(world_.check_conservation(work_of_rank_, &work));
-  balancing_.remap(work);
-  PetscCall(PetscTime(&start));
-  PetscCall(world_.motion->begin(clock_.time));
-  PetscCall(PetscTime(&end));
-  world_.breakdown.gather += end - start;
-  PetscFunctionReturn(0);
-}
-
-template <int dim>
 void Dynamics<dim>::serialize(Archive &archive) {
   notice_release();
   archive.serialize("dynamics", remaps_, since_sort_, critical_step_, shrink_, omega_max_, omega_step_,
@@ -239,6 +255,11 @@ void Dynamics<dim>::serialize(Archive &archive) {
   if (archive.reading()) integrator_ = make_integrator(settings_);  // the nodes are others
   integrator_->serialize(archive);
   known_releases_ = world_.releases();
+}
+
+template <int dim>
+bool Dynamics<dim>::explicit_drag() const {
+  return world_.scene.water->drag == PoreDrag::at_start;
 }
 
 template class Dynamics<2>;

@@ -56,13 +56,14 @@ class Dynamics {
   std::function<bool(Vec<3> *velocity)> watch;
 
  private:
+  void check_incoming_wave() const;
   void check_fixed_step();
-  bool explicit_drag() const { return world_.scene.water.drag == PoreDrag::at_start; }
+  bool explicit_drag() const;
   void notice_release();
-  PetscErrorCode step(double until);
+  double stable_step();
+  void refuse_obstacle();
   Verdict agree();
   void refuse_broken();
-  PetscErrorCode remap();
 
   World<dim> &world_;
   Clock &clock_;

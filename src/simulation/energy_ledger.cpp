@@ -2,6 +2,8 @@
 
 #include <optional>
 
+#include "scene/scene.h"
+
 namespace talus {
 
 template <int dim>

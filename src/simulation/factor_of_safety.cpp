@@ -1,11 +1,20 @@
-// Factor of safety by reduction of strength after the stages, docs/theory/finite_elements.md section 5.
+#include "simulation/stages/factor_of_safety.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <functional>
+#include <iterator>
 
+#include "base/rounded.h"
+#include "output/replace_file.h"
+#include "scene/body_source.h"
+#include "scene/factor_source.h"
+#include "scene/quasi_static_source.h"
+#include "scene/scene.h"
 #include "scene/stress_at_rest.h"
+#include "simulation/factor_document.h"
 #include "simulation/search_region.h"
-#include "simulation/simulation_impl.h"
 
 namespace talus {
 
@@ -13,6 +22,12 @@ namespace talus {
 /// beside soil that does not, or on a base with friction.
 template <int dim>
 void check_strength(const World<dim> &world) {
+  if constexpr (dim == 3)
+    for (const auto &source : world.conditions.sources())
+      if (source.kind.quasi_static == OnSoil::contact)
+        world.scene.complain("boundary." + source.name + ".kind",
+                             "leaves no factor of safety in 3D, which needs elements of second order: the corners of "
+                             "their facets bear nothing on a base; take fixed or roller, or a section in plane strain");
   bool some_fail = std::ranges::any_of(world.conditions.sources(),
                                        [](const auto &source) { return source.kind.quasi_static == OnSoil::contact; });
   for (size_t b = 0; b < world.laws.size(); ++b)
@@ -59,34 +74,6 @@ void note_yielding_ground(const World<dim> &world, Recorder<dim> &recorder) {
                     rounded((1 - std::sin(phi)) / (1 + std::sin(phi))) +
                     "; the factor of safety does not depend on this, displacement and strain of the stages do");
   }
-}
-
-template <int dim>
-FactorOfSafety Simulation<dim>::factor_of_safety() {
-  const Scene &scene = run_.scene;
-  for (size_t k = 0; k < scene.stage.size(); ++k)
-    if (!is_static(scene.stage[k].kind))
-      scene.complain("stage." + std::to_string(k) + ".kind", "must be \"quasi_static\" for a factor of safety");
-  check_strength(run_.world);
-  if constexpr (dim == 3)
-    for (const auto &source : run_.world.conditions.sources())
-      if (source.kind.quasi_static == OnSoil::contact)
-        scene.complain("boundary." + source.name + ".kind",
-                       "leaves no factor of safety in 3D, which needs elements of second order: the corners of their "
-                       "facets bear nothing on a base; take fixed or roller, or a section in plane strain");
-  const Elements asked = scene.quasi_static.elements;
-  if (run_.statics.made() && asked != Elements::quadratic)
-    throw RunError(
-        "the stages have been solved with elements of first order, which give factors of safety that are too large; "
-        "ask "
-        "for the factor before they are run, or set quasi_static.elements = \"quadratic\"");
-  run_.statics.for_factor = true;
-  if (run_.clock.steps == 0) run();
-  if (asked != Elements::quadratic)
-    run_.recorder.note(
-        "the factor of safety is computed with elements of second order: those of first order, which the scene sets "
-        "(quasi_static.elements), give factors that are 13 to 34 % too large");
-  return told([&] { return reduce_strength(); });
 }
 
 namespace {
@@ -202,9 +189,8 @@ std::string other_water_in_words(const Mechanism &m, TrialFlow flow) {
 /// Tables of the trials, of their load-displacement curves, and of the slip surfaces that were found.
 class FactorTables {
  public:
-  explicit FactorTables(const std::string &directory) {
-    if (directory.empty()) return;
-    const std::string name = directory + "/factor_of_safety";
+  explicit FactorTables(const std::string &name) {
+    if (name.empty()) return;
     trials_ = std::fopen((name + ".csv").c_str(), "w");
     curves_ = std::fopen((name + "_curves.csv").c_str(), "w");
     surfaces_ = std::fopen((name + "_slip_surfaces.csv").c_str(), "w");
@@ -242,21 +228,73 @@ class FactorTables {
 
 }  // namespace
 
-/// From the state that the stages have led to.
 template <int dim>
-FactorOfSafety Simulation<dim>::reduce_strength() {
+std::string FactorStage<dim>::results() const {
+  int rank;
+  MPI_Comm_rank(run_.world.comm, &rank);
+  if (rank > 0 || run_.options.directory.empty()) return "";
+  const auto &stages = run_.scene.stage;
+  const auto last = std::find_if(stages.rbegin(), stages.rend(), std::mem_fn(&Stage::finds_factor));
+  return run_.options.directory + "/factor_of_safety" + (&stage_ == &*last ? "" : "_" + stage_.name);
+}
+
+template <int dim>
+void FactorStage<dim>::run() {
+  if (run_.progress.met) return;  // a resumed run has it behind it
+  begin();
+  QuasiStatic<dim> &problem = run_.statics.problem();
+  const auto before = problem.save();
+  const FactorOfSafety &found = run_.factors.emplace_back(search());
+  report(found);
+  const Clock now = run_.clock;
+  const FluidBooks books = run_.recorder.fluids();
+  std::vector<std::vector<Vec<dim>>> reference;
+  for (const auto &body : run_.world.bodies)
+    reference.emplace_back(body->particles().reference.data(),
+                           body->particles().reference.data() + body->particles().count);
+  if (run_.last_stage()) show_mechanism();
+  problem.restore(before), problem.soil().displacement_is_taken();
+  if (run_.last_stage()) {
+    run_.statics.to_particles();
+    for (std::size_t b = 0; b < reference.size(); ++b)
+      std::ranges::copy(reference[b], run_.world.bodies[b]->particles().reference.data());
+    run_.clock = now, run_.recorder.fluids() = books;
+  }
+  run_.progress.met = true;
+  run_.write_checkpoint();
+}
+
+/// The problem is in the state of the stage before; a run that was resumed since has still to bring it under the loads.
+template <int dim>
+void FactorStage<dim>::begin() {
+  const auto before = std::find_if_not(std::make_reverse_iterator(run_.scene.stage.begin() + run_.progress.number),
+                                       run_.scene.stage.rend(), std::mem_fn(&Stage::finds_factor));
+  run_.clock.stage = stage_.name;
+  run_.recorder.begin_stage(stage_);
+  if (run_.options.resume) {
+    QuasiStatic<dim> &problem = run_.statics.problem();
+    const auto state = problem.save();
+    problem.set_acceleration(run_.scene.acceleration_in(*before));
+    require(problem.begin_path(run_.clock.load_time));
+    problem.restore(state);
+  }
+  if (run_.scene.quasi_static->elements != Elements::quadratic)
+    run_.recorder.note(
+        "the factor of safety is computed with elements of second order: those of first order, which the scene sets "
+        "(quasi_static.elements), give factors that are 13 to 34 % too large");
+}
+
+template <int dim>
+FactorOfSafety FactorStage<dim>::search() {
   FactorOfSafety result;
   World<dim> &world = run_.world;
   double low[dim], high[dim], extent = 0;
   for (int d = 0; d < dim; ++d) low[d] = 1e300, high[d] = -1e300;
-  for (const BodyReport &body : bodies())
+  for (const BodyReport &body : world.report())
     for (int d = 0; d < dim; ++d) low[d] = std::min(low[d], body.low[d]), high[d] = std::max(high[d], body.high[d]);
   for (int d = 0; d < dim; ++d) extent = std::max(extent, high[d] - low[d]);
   const double height = high[run_.scene.vertical()] - low[run_.scene.vertical()];
-  int rank;
-  MPI_Comm_rank(world.comm, &rank);
-  FactorTables tables(rank == 0 ? run_.options.directory : "");
-  run_.clock.stage = strength_reduction;
+  FactorTables tables(results());
   for (size_t b = 0; b < world.laws.size(); ++b)
     if (!run_.scene.body[b].reduce_strength)
       run_.recorder.note("the strength of body." + run_.scene.body[b].name +
@@ -266,12 +304,12 @@ FactorOfSafety Simulation<dim>::reduce_strength() {
                          " is not reduced: " + law_name(world.laws[b]) + " " + no_strength_reduction(world.laws[b]));
   note_yielding_ground(world, run_.recorder);
   bool stopped = false;
-  const SearchRegion region(run_.scene.factor_of_safety);
+  const SearchRegion region(*run_.scene.factor_of_safety);
   ReductionSettings<dim> settings;
   if (world.phases.liquid) settings.flow = &run_.statics.flow();
   settings.stands = run_.statics.lost_stages.empty(), settings.by_own_flow = settings.stands && !run_.statics.dilated;
   settings.load_time = run_.clock.load_time, settings.time = run_.clock.time;
-  settings.shown_displacement = 0.01 * extent, settings.mechanisms = run_.scene.factor_of_safety.mechanisms;
+  settings.shown_displacement = 0.01 * extent, settings.mechanisms = run_.scene.factor_of_safety->mechanisms;
   if (!region.everywhere())
     settings.divided = [&, vertical = run_.scene.vertical()](const Vec<dim> &x, double size) {
       return region.holds(x[0], x[vertical], size);
@@ -279,7 +317,7 @@ FactorOfSafety Simulation<dim>::reduce_strength() {
   settings.tell_confined = [&](double share) {
     if (share == 0)
       run_.scene.complain(
-          std::string("factor_of_safety.") + (run_.scene.factor_of_safety.within.empty() ? "along" : "within"),
+          std::string("factor_of_safety.") + (run_.scene.factor_of_safety->within.empty() ? "along" : "within"),
           "must lie in the soil; it holds none");
     run_.recorder.note("the search is confined to " + rounded(100 * share) +
                        " % of the soil; elsewhere soil keeps its strength");
@@ -295,65 +333,74 @@ FactorOfSafety Simulation<dim>::reduce_strength() {
                        {{"factor", t.factor}, {"displacement_m", t.displacement}});
     tables.add(t);
   };
-  require(talus::reduce_strength<dim>(run_.statics.problem(), world.laws, settings, &result, &stopped));
+  require(reduce_strength<dim>(run_.statics.problem(), world.laws, settings, &result, &stopped));
   result.lost_stages = run_.statics.lost_stages;
   if (stopped) throw RunFailure("interrupted");
   if (result.lower == 0 || result.upper == 0) throw RunFailure(why_open(result, !region.everywhere()));
+  tables.add(result);
+  for (const Mechanism &m : result.further) tables.add(m);
+  return result;
+}
+
+template <int dim>
+void FactorStage<dim>::report(const FactorOfSafety &found) {
   const auto doubt = [&](const Mechanism &m) {
-    if (const std::string sentence = too_few_cells(world, m); !sentence.empty()) run_.recorder.warn(sentence);
+    if (const std::string sentence = too_few_cells(run_.world, m); !sentence.empty()) run_.recorder.warn(sentence);
   };
   const auto named = [&](const Mechanism &m) {
-    const std::string water = about_water(m, result.flow);
+    const std::string water = about_water(m, found.flow);
     return "factor of safety" + water + (water.empty() ? " " : ": ") + bracket_in_words(m);
   };
-  run_.recorder.note(named(result) + "; the mechanism " + motion_in_words(result, dim), event::factor_of_safety,
-                     values_of(result, 1));
-  tables.add(result);
-  doubt(result);
-  if (const std::string other = other_water_in_words(result, result.flow); !other.empty()) run_.recorder.note(other);
-  if (result.by_flow.contains(TrialFlow::own))
-    run_.recorder.note(std::string(result.flow == TrialFlow::own ? "this" : "that") +
-                       " is the factor of soil with its own psi < phi; " + bounds_in_words(result));
-  if (result.weakened.upper > 0)
+  run_.recorder.note(named(found) + "; the mechanism " + motion_in_words(found, dim), event::factor_of_safety,
+                     values_of(found, 1));
+  doubt(found);
+  if (const std::string other = other_water_in_words(found, found.flow); !other.empty()) run_.recorder.note(other);
+  if (found.by_flow.contains(TrialFlow::own))
+    run_.recorder.note(std::string(found.flow == TrialFlow::own ? "this" : "that") +
+                       " is the factor of soil with its own psi < phi; " + bounds_in_words(found));
+  if (found.weakened.upper > 0)
     run_.recorder.note(
         "it begins with the stress that the stages found with psi = phi; if this soil weakens from great "
         "strength, it fails already " +
-        bracket_in_words(result.weakened) +
+        bracket_in_words(found.weakened) +
         ": whether it stands with its own strength depends on how it came to its stress");
-  for (size_t k = 0; k < result.further.size(); ++k) {
-    const Mechanism &m = result.further[k];
-    const std::string other = other_water_in_words(m, result.flow);
+  for (size_t k = 0; k < found.further.size(); ++k) {
+    const Mechanism &m = found.further[k];
+    const std::string other = other_water_in_words(m, found.flow);
     run_.recorder.note("mechanism " + std::to_string(k + 2) + ": " + named(m) + (other.empty() ? "" : "; " + other) +
                            (m.by_flow.contains(TrialFlow::own) ? ", " + bounds_in_words(m) : "") + "; it " +
                            motion_in_words(m, dim) + ", and " + rounded(100 * m.of_critical) +
                            " % of the soil of mechanism 1",
                        event::factor_of_safety, values_of(m, static_cast<int>(k) + 2));
-    tables.add(m);
     doubt(m);
   }
-  if (static_cast<int>(result.further.size()) + 1 < settings.mechanisms)
+  if (static_cast<int>(found.further.size()) + 1 < run_.scene.factor_of_safety->mechanisms)
     run_.recorder.note("no further mechanism was found: the rest of the soil stands while that of those found is held");
   run_.recorder.note_cut_off([&](const auto &visit) {
     run_.statics.each_gauss_point([&](const Vec<dim> &x, const Vec<dim> &way, double mass, double strain) {
       visit({x, way, mass, strain});
     });
   });
-  for (const std::string &stage : result.lost_stages)
+  for (const std::string &stage : found.lost_stages)
     run_.recorder.note("stage " + stage + " found no equilibrium" +
-                       (result.lower < 1
-                            ? ": the soil does not stand with its own strength"
-                            : " by its load steps, though the soil stands: displacement and stress of that "
-                              "stage are not those of this soil. The factor does not need them"));
-  ++run_.clock.steps;
+                       (found.lower < 1 ? ": the soil does not stand with its own strength"
+                                        : " by its load steps, though the soil stands: displacement and stress of that "
+                                          "stage are not those of this soil. The factor does not need them"));
+  if (const std::string name = results(); !name.empty()) replace_file(name + ".json", document_of(found));
+}
+
+/// In the last row of the history and the last snapshot.
+template <int dim>
+void FactorStage<dim>::show_mechanism() {
+  ++run_.clock.steps, run_.clock.stage = strength_reduction;
   run_.hand_to_particles();
   run_.recorder.write_history();
   run_.recorder.write_snapshot();
-  return result;
 }
 
-template FactorOfSafety Simulation<2>::factor_of_safety();
-template FactorOfSafety Simulation<3>::factor_of_safety();
-template FactorOfSafety Simulation<2>::reduce_strength();
-template FactorOfSafety Simulation<3>::reduce_strength();
+template void check_strength(const World<2> &);
+template void check_strength(const World<3> &);
+template class FactorStage<2>;
+template class FactorStage<3>;
 
 }  // namespace talus

@@ -4,6 +4,9 @@
 #include <cmath>
 
 #include "output/output_field.h"
+#include "scene/output_source.h"
+#include "scene/scene.h"
+#include "scene/stage.h"
 
 namespace talus {
 namespace {
@@ -74,7 +77,7 @@ std::vector<std::string> FollowedLines<dim>::Line::columns() const {
 
 template <int dim>
 FollowedLines<dim>::FollowedLines(const World<dim> &world) : comm_(world.comm) {
-  for (const OutputLine &line : world.scene.output.line) lines_.emplace_back(world, line);
+  for (const OutputLine &line : world.scene.output->line) lines_.emplace_back(world, line);
 }
 
 template <int dim>

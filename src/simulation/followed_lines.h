@@ -11,6 +11,8 @@
 
 namespace talus {
 
+struct OutputLine;
+
 template <int dim>
 class FollowedLines {
  public:

@@ -5,6 +5,7 @@
 
 #include "base/rounded.h"
 #include "scene/reader.h"
+#include "scene/scene.h"
 #include "solvers/quasi_static/pore_flow.h"
 
 namespace talus {

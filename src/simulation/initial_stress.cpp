@@ -2,6 +2,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "physics/laws/frictional_strength.h"
+#include "scene/body_source.h"
+#include "scene/scene.h"
+#include "scene/water_source.h"
 #include "simulation/overburden.h"
 #include "simulation/statics.h"
 
@@ -12,15 +16,10 @@ namespace {
 /// elastic soil held at its sides.
 double earth_pressure_at_rest(const BodySource &source, const Law &law, double friction_share) {
   if (source.k0 > 0) return source.k0;
-  return std::visit(
-      [friction_share](const auto &one) {
-        if constexpr (requires { one.friction_angle; })
-          return 1 - std::sin(friction_share * one.friction_angle);
-        else
-          return (3 * one.bulk_modulus() - 2 * one.shear_modulus()) /
-                 (3 * one.bulk_modulus() + 4 * one.shear_modulus());
-      },
-      law);
+  if (const FrictionalStrength *strength = frictional_strength(law))
+    return 1 - std::sin(friction_share * strength->friction_angle);
+  const double K = bulk_modulus(law), G = shear_modulus(law);
+  return (3 * K - 2 * G) / (3 * K + 4 * G);
 }
 
 }  // namespace
@@ -50,7 +49,7 @@ void Statics<dim>::start_stress() {
       double weight = overburden.above(x, &surface[vertical]), pressure = 0;
       if (world_.phases.prescribed) {
         pressure = world_.pressure(x, clock_.load_time, static_cast<int>(b));
-        if (world_.scene.water.open_water_load) weight += world_.pressure(surface, clock_.load_time, common_water);
+        if (world_.scene.water->open_water_load) weight += world_.pressure(surface, clock_.load_time, common_water);
       }
       if (world_.phases.liquid) {
         weight += open_water(surface);

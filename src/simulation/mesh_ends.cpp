@@ -5,6 +5,9 @@
 #include <limits>
 #include <map>
 
+#include "scene/boundary_source.h"
+#include "scene/mesh_source.h"
+#include "scene/scene.h"
 #include "simulation/failure.h"
 
 namespace talus {
@@ -81,7 +84,7 @@ void MeshEnds<dim>::find_faces() {
         if (face > 1e-6 * depth) continue;
         const auto named = group_of.find({c, k});
         const Group group = named == group_of.end() ? Group{} : named->second;
-        if (!group.has_boundary && world.scene.mesh.leaving_particles == WhenOutside::remove) continue;  // it goes on
+        if (!group.has_boundary && world.scene.mesh->leaving_particles == WhenOutside::remove) continue;  // it goes on
         if (p == bottom() && group.slips) continue;
         faces_.push_back({c, p, group.number, depth, group.slips});
       }

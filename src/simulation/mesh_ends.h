@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "scene/scene.h"
 #include "simulation/world.h"
 
 namespace talus {

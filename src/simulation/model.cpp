@@ -9,7 +9,12 @@
 #include <tuple>
 
 #include "output/together.h"
+#include "scene/body_source.h"
+#include "scene/output_source.h"
 #include "scene/reader.h"
+#include "scene/scene.h"
+#include "scene/stage.h"
+#include "scene/water_source.h"
 #include "simulation/changing_loads.h"
 #include "simulation/dynamics.h"
 #include "simulation/scene_keys.h"
@@ -115,6 +120,15 @@ struct Fields {
     for (const auto &[name, meant] : choices)
       if (meant == value) object[key] = name;
   }
+  template <class Variant>
+  void one_of(const char *key, Variant &value, const char *) {
+    std::visit(
+        [&](auto &kind) {
+          object[key] = kind.name;
+          kind.fields(*this);
+        },
+        value);
+  }
 };
 
 /// Units by path of the table, kind ("": all kinds) and key.
@@ -155,8 +169,8 @@ class Model {
     all["water"]["line"] = line_of_no_pressure();
     all["water"]["surface"] = water_surface();
     all["stages"] = list(scene_.stage, [&](Stage stage) { return stage_of(stage); });
-    all["points"] = list(scene_.output.point, point);
-    all["lines"] = list(scene_.output.line, line);
+    all["points"] = list(scene_.output->point, point);
+    all["lines"] = list(scene_.output->line, line);
     const std::string cells = this->cells(), boundaries = this->boundaries();
     if (rank_in(world_.comm) > 0) return "";
     return with_entry(with_entry(text_of(all), "cells", cells), "boundaries", boundaries);
@@ -324,7 +338,7 @@ class Model {
     const double x = place[0], y = place[1], z = dim == 3 ? place[dim - 1] : 0;
     double level = std::numeric_limits<double>::quiet_NaN();
     if (kind.outside) {
-      const double weight = scene_.water.density * scene_.gravity_size(), elevation = place[scene_.vertical()],
+      const double weight = scene_.water->density * scene_.gravity_size(), elevation = place[scene_.vertical()],
                    p = kind.outside(x, y, z, 0, {weight, elevation});
       if (kind.open_water && weight > 0 && p > 0) level = elevation + p / weight;
       values.add(p < 0 ? "suction" : "pore pressure", "Pa", std::abs(p));
@@ -361,10 +375,10 @@ class Model {
       const std::vector<std::vector<double>> *points;
     };
     std::vector<Table> tables;
-    if (!scene_.water.table.points.empty()) tables.push_back({"", &scene_.water.table.points});
+    if (!scene_.water->table.points.empty()) tables.push_back({"", &scene_.water->table.points});
     for (const BodySource &body : scene_.body)
       if (!body.water_table.points.empty()) tables.push_back({body.name, &body.water_table.points});
-    const double rise = tables.empty() ? 0 : scene_.water.level(0);
+    const double rise = tables.empty() ? 0 : scene_.water->level(0);
     return list(tables, [&](const Table &table) {
       std::vector<std::vector<double>> points = *table.points;
       for (std::vector<double> &point : points) point[1] += rise;
@@ -380,7 +394,7 @@ class Model {
     constexpr double steep = 0.2, share = 0.7;  // of the normal of ground, and of the size of the face
     for (const SoilFace &face : surface_) {
       if (dim == 2 || face.normal[up] < steep) continue;
-      const WaterTable &own = scene_.body[face.body].water_table, &table = own.given() ? own : scene_.water.table;
+      const WaterTable &own = scene_.body[face.body].water_table, &table = own.given() ? own : scene_.water->table;
       if (!table.elevation.given()) continue;
       Piece<dim> piece = piece_of(face);
       Vec<dim> middle{};
@@ -388,7 +402,7 @@ class Model {
         for (int d = 0; d < dim; ++d) middle[d] += corner[d] / 3;
       for (Vec<dim> &corner : piece.corner) {
         for (int d = 0; d < dim; ++d) corner[d] = middle[d] + share * (corner[d] - middle[d]);
-        corner[up] = table.at(corner[0], corner[1], corner[dim - 1]) + scene_.water.level(0);
+        corner[up] = table.at(corner[0], corner[1], corner[dim - 1]) + scene_.water->level(0);
       }
       pieces.push_back(piece);
     }
@@ -398,11 +412,11 @@ class Model {
   /// Where the prescribed pore pressure ends in the soil, if it is not only that of a polyline; in plane strain.
   Json line_of_no_pressure() const {
     std::vector<Piece<dim>> mine;
-    const Function &excess = scene_.water.excess;
+    const Function &excess = scene_.water->excess;
     const bool by_ratio =
         std::ranges::any_of(scene_.body, [](const BodySource &body) { return body.pore_pressure_ratio > 0; });
     const bool by_function =
-        scene_.water.table.elevation.given() ||
+        scene_.water->table.elevation.given() ||
         std::ranges::any_of(scene_.body, [](const BodySource &body) { return body.water_table.elevation.given(); });
     const bool told = by_function || by_ratio || !excess.constant() || excess(0) != 0;
     for (int c = 0; dim == 2 && world_.phases.prescribed && told && c < world_.mesh.cell_count(); ++c) {

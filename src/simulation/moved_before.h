@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "physics/laws/laws.h"
+#include "physics/laws/law.h"
 #include "simulation.h"
 
 namespace talus {

@@ -53,7 +53,7 @@ struct ParticleState {
       const PoreReport pores = motion.pores(source, i);
       pore_pressure = pores.liquid, gas_pressure = pores.gas, suction = pores.suction, saturation = pores.saturation;
       surface = pores.surface;
-      porosity = 1 - mass / (source.source().grain_density * volume);
+      porosity = 1 - mass / (source.grain_density() * volume);
     }
   }
 };
@@ -169,7 +169,7 @@ OutputFields<Point> output_fields(const PhaseTraits &phases,
         [of_body](const Point &p) { return of_body[p.body].friction_angle[1] / degree.si * p.strength.friction; });
   }
   add_mobilised_strength(fields, bodies);
-  if (particles && std::ranges::any_of(bodies, [](const auto &b) { return b->source().averaging_length > 0; }))
+  if (particles && std::ranges::any_of(bodies, [](const auto &b) { return b->averaging_length() > 0; }))
     fields.add("averaged_plastic_strain", "-",
                "plastic strain by which the soil softens: that of the cell, averaged over averaging_length where its "
                "body has one",

@@ -10,7 +10,11 @@
 #include "output/pictures.h"
 #include "output/replace_file.h"
 #include "output/together.h"
+#include "scene/output_source.h"
 #include "scene/reader.h"
+#include "scene/scene.h"
+#include "scene/stage.h"
+#include "scene/water_source.h"
 #include "scene/words.h"
 #include "simulation/base_clearance.h"
 #include "simulation/dynamics.h"
@@ -126,7 +130,7 @@ void Recorder<dim>::close(const std::string &last_words) {
   if (!options_.pictures) return;
   int rank, drawn = 1;
   MPI_Comm_rank(of_.world.comm, &rank);
-  if (rank == 0) drawn = draw_pictures(options_.directory, {.fields = scene_.output.picture, .times = {}});
+  if (rank == 0) drawn = draw_pictures(options_.directory, {.fields = scene_.output->picture, .times = {}});
   MPI_Bcast(&drawn, 1, MPI_INT, 0, of_.world.comm);
   if (!drawn) throw RunError(without_pictures(options_.directory));
 }
@@ -141,12 +145,12 @@ double Recorder<dim>::longest_duration() const {
 /// A picture that nobody can draw is refused before the run, not missed after it.
 template <int dim>
 void Recorder<dim>::check_pictures() {
-  if (scene_.output.picture.empty()) return;
+  if (scene_.output->picture.empty()) return;
   const auto fields = output_fields<ParticleState<dim>>(phases_, of_.world.bodies);
   std::vector<std::string> known;
   for (const auto &field : fields.list())
     if (field.name != "position") known.push_back(field.name);
-  for (const std::string &field : scene_.output.picture) {
+  for (const std::string &field : scene_.output->picture) {
     const bool drawn = std::ranges::any_of(fields.list(), [&](const auto &one) {
       return field == one.name || (one.components > 1 && field.rfind(one.name + "_", 0) == 0);
     });
@@ -161,13 +165,13 @@ void Recorder<dim>::check_pictures() {
 /// Results closer than a thousandth of a step are no results, and steps that reached each of them would go on for ever.
 template <int dim>
 void Recorder<dim>::check_intervals() {
-  if (scene_.water.drag == PoreDrag::at_start) return;  // its steps are as short as pores are tight
+  if (scene_.water->drag == PoreDrag::at_start) return;  // its steps are as short as pores are tight
   double step = std::numeric_limits<double>::infinity();
   for (const BodyReport &body : of_.world.report()) step = std::min(step, body.critical_step);
   if (std::isinf(step)) return;  // all soil comes later
   if (const double fixed = step_rule(choose_integrator(scene_)).fixed; fixed > 0) step = std::min(step, fixed);
   const double least = step / 1000;
-  const Output &output = scene_.output;
+  const Output &output = *scene_.output;
   for (const auto &[key, interval] : {std::pair{"output.interval", output.interval},
                                       {"output.history_interval", output.history_interval},
                                       {"output.checkpoint_interval", output.checkpoint_interval}})
@@ -208,7 +212,7 @@ RunRow<dim> Recorder<dim>::run_row() const {
   row.load_time = of_.clock.load_time;
   row.escaped = world.escaped.sums();
   row.fluids.resize(phases_.fluids());
-  if (std::ranges::any_of(scene_.stage, [](const Stage &stage) { return is_static(stage.kind); }))
+  if (std::ranges::any_of(scene_.stage, [](const Stage &stage) { return stage.is_static(); }))
     row.handed.resize(row.fluids.size());
   for (size_t s = 0; s < world.conditions.sources().size(); ++s) {
     const auto &source = world.conditions.sources()[s];

@@ -130,7 +130,6 @@ class Recorder {
   void note_sharing();
   void note_steps();
   void note_escaped();
-  const std::vector<int> &ways_out();
   std::string ways_in_words();
   void write_escaped();
   double longest_duration() const;
@@ -151,8 +150,6 @@ class Recorder {
   std::vector<std::string> changed_;  ///< keys of the scene that are others than before the run was resumed
   double told_escaped_ = 0;           ///< particles that had left when the log last said so
   double written_escaped_ = -1;       ///< particles in escaped.csv; -1: not known
-  std::vector<int> ways_out_;         ///< by which groups the particles of this rank left ...
-  double known_ways_ = -1;            ///< ... when so many had left
   std::string passed_over_;           ///< what was wrong with a later checkpoint than the one that the run goes on from
   int written_ranks_ = 0;             ///< on which it ran before, if these are others
   double imbalance_at_start_ = 0;     ///< of particles; 0: not looked at yet

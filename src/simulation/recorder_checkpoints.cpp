@@ -5,6 +5,7 @@
 #include "output/together.h"
 #include "scene/changes.h"
 #include "scene/reader.h"
+#include "scene/scene.h"
 #include "scene/words.h"
 #include "simulation/recorder.h"
 

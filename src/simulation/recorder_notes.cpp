@@ -5,8 +5,10 @@
 #include <sstream>
 
 #include "output/escaped_table.h"
+#include "scene/output_source.h"
+#include "scene/scene.h"
+#include "scene/stage.h"
 #include "simulation/recorder.h"
-#include "simulation/ways_out.h"
 
 namespace talus {
 
@@ -15,7 +17,7 @@ void Recorder<dim>::begin_stage(const Stage &stage) {
   if (!results_) return;
   const auto here = scene_.stage.begin() + (&stage - scene_.stage.data());
   results_->progress.stage(stage.name,
-                           std::none_of(here, scene_.stage.end(), [](const Stage &s) { return is_static(s.kind); }));
+                           std::none_of(here, scene_.stage.end(), [](const Stage &s) { return s.is_static(); }));
 }
 
 template <int dim>
@@ -53,21 +55,13 @@ bool Recorder<dim>::happened(const char *kind, double since) const {
   return std::ranges::any_of(events_, [&](const Event &one) { return one.kind == kind && one.time >= since; });
 }
 
-template <int dim>
-const std::vector<int> &Recorder<dim>::ways_out() {
-  if (known_ways_ != of_.world.escaped.sums().particles)
-    ways_out_ = talus::ways_out(of_.world), known_ways_ = of_.world.escaped.sums().particles;
-  return ways_out_;
-}
-
 /// The groups by which particles left the mesh, with their shares of the mass. Collective.
 template <int dim>
 std::string Recorder<dim>::ways_in_words() {
   const std::vector<std::string> &names = of_.world.mesh.group_names();
   std::vector<double> mass(names.size() + 1);  // the last: faces without a name
-  const auto &mine = of_.world.escaped.of_this_rank();
-  const std::vector<int> &groups = ways_out();
-  for (std::size_t i = 0; i < mine.size(); ++i) mass[groups[i] < 0 ? names.size() : groups[i]] += mine[i].mass;
+  for (const EscapedParticle<dim> &one : of_.world.escaped.of_this_rank())
+    mass[one.group < 0 ? names.size() : one.group] += one.mass;
   MPI_Allreduce(MPI_IN_PLACE, mass.data(), static_cast<int>(mass.size()), MPI_DOUBLE, MPI_SUM, of_.world.comm);
   std::vector<std::size_t> order(mass.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -130,14 +124,13 @@ void Recorder<dim>::write_escaped() {
   for (const auto &[name, unit] : {std::pair{"", "m"}, {"velocity_", "m/s"}, {"momentum_", "kg m/s"}})
     for (int d = 0; d < dim; ++d) table.names.push_back(history_column(std::string(name) + "xyz"[d], unit));
   table.names.push_back("group"), table.groups = of_.world.mesh.group_names();
-  auto way = ways_out().begin();
   for (const EscapedParticle<dim> &one : escaped.of_this_rank()) {
     table.values.insert(table.values.end(),
                         {one.time, static_cast<double>(one.id), static_cast<double>(one.body), one.mass});
     table.values.insert(table.values.end(), one.fluid_mass, one.fluid_mass + phases_.fluids());
     for (const Vec<dim> *x : {&one.position, &one.velocity, &one.momentum})
       table.values.insert(table.values.end(), x->begin(), x->end());
-    table.values.push_back(*way++);
+    table.values.push_back(static_cast<double>(one.group));
   }
   write_escaped_table(of_.world.comm, options_.directory + "/escaped.csv", header().bodies, table);
   written_escaped_ = escaped.sums().particles;
@@ -238,7 +231,7 @@ void Recorder<dim>::fail(const std::string &cause) {
     results_->progress.failure(message.str());
     if (options_.pictures && !interrupted && results_->file.last_step() >= 0)
       throw BrokenOff(message.str() + "; report.html there shows how far it came", options_.directory,
-                      scene_.output.picture);
+                      scene_.output->picture);
   }
   throw RunError(message.str());
 }
@@ -255,8 +248,6 @@ template void Recorder<2>::tell(const Event &);
 template void Recorder<3>::tell(const Event &);
 template bool Recorder<2>::happened(const char *, double) const;
 template bool Recorder<3>::happened(const char *, double) const;
-template const std::vector<int> &Recorder<2>::ways_out();
-template const std::vector<int> &Recorder<3>::ways_out();
 template std::string Recorder<2>::ways_in_words();
 template std::string Recorder<3>::ways_in_words();
 template void Recorder<2>::note_escaped();

@@ -6,8 +6,12 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <functional>
 
 #include "scene/reader.h"
+#include "scene/scene.h"
+#include "scene/stage.h"
+#include "scene/start_from.h"
 #include "simulation/moved_before.h"
 #include "simulation/start_from.h"
 
@@ -43,7 +47,7 @@ Run<dim>::Run(MPI_Comm comm, const Scene &of, const RunOptions &with, const std:
       statics(world, clock),
       energies(world, clock, statics),
       recorder({world, clock, dynamics, statics, points, lines, energies}, options) {
-  if (!scene.start_from.folder.empty() && !options.resume) start_from_other_run();
+  if (!scene.start_from->folder.empty() && !options.resume) start_from_other_run();
 }
 
 template <int dim>
@@ -120,7 +124,7 @@ PetscErrorCode Run<dim>::serialize(Archive &archive) {
   PetscCall(serialize_state(archive));
   const bool staged = progress.number >= 0;  // a host program steps without stages
   if (archive.reading() && staged) stop = make_stop_criterion<dim>(stage());
-  if (staged) stop->serialize(archive);
+  if (stop) stop->serialize(archive);
   archive.serialize("moved before", moved_before);
   energies.serialize(archive);
   recorder.serialize(archive);
@@ -140,8 +144,8 @@ template <int dim>
 Holdings Run<dim>::holdings() const {
   Holdings mine{world.mesh.global_cell, world.mesh.global_node};
   // edges have nodes of finite elements, if not in a stage of this scene then in one of the run that it starts from
-  if (!scene.start_from.folder.empty() ||
-      std::ranges::any_of(scene.stage, [](const Stage &s) { return is_static(s.kind); })) {
+  if (!scene.start_from->folder.empty() ||
+      std::ranges::any_of(scene.stage, [](const Stage &s) { return s.is_static(); })) {
     const std::vector<long long> edges = world.mesh.global_edges();
     mine.points.insert(mine.points.end(), edges.begin(), edges.end());
   }
@@ -200,8 +204,7 @@ void Run<dim>::resume() {
   const auto changed = [this](const char *key) {
     return recorder.has_changed("stage." + std::to_string(progress.number) + "." + key);
   };
-  const bool waits_for_loads = stage().until == StopWhen::rest || stage().until == StopWhen::equilibrium;
-  if (changed("rest_speed") || (changed("duration") && waits_for_loads && !is_static(stage().kind))) {
+  if (changed("rest_speed") || (changed("duration") && stage().stop().waits_for_loads)) {
     progress.met = false;  // it has to stay below the new speed, and more loads may come within a longer duration
     stop = make_stop_criterion<dim>(stage());
   }
@@ -211,7 +214,7 @@ void Run<dim>::resume() {
 /// A remap makes that what nodes and cells hold comes about anew, at time 0 and with the keys of this scene.
 template <int dim>
 void Run<dim>::start_from_other_run() {
-  const std::string folder = scene.start_from.folder;
+  const std::string folder = scene.start_from->folder;
   std::error_code missing;
   if (!options.directory.empty() && std::filesystem::equivalent(folder, options.directory, missing))
     scene.complain("start_from.folder", "must not be the folder of this run's own results; choose another one with -o");
@@ -220,7 +223,7 @@ void Run<dim>::start_from_other_run() {
     const std::vector<std::string> changed = check_start(scene, found.header, recorder.checkpoint_header(-1));
     const std::vector<char> varies = world.strength_varies();
     for (std::size_t b = 0; b < varies.size(); ++b)
-      if (varies[b]) check_strength_by_place(scene, scene.body[b].name, changed);
+      if (varies[b]) check_strength_by_place(scene, world.bodies[b]->name(), changed);
     if (!found.passed_over.empty()) start_warning = found.passed_over + "; the checkpoint before it is taken";
     Archive archive = state_of(std::move(found));
     try {
@@ -232,7 +235,7 @@ void Run<dim>::start_from_other_run() {
     std::ostringstream from;
     from << "starts at the state of the run in " << folder << ", t = " << clock.time << " s, step " << clock.steps;
     if (world.motion->gathered()) require(world.release(clock.time));
-    if (scene.start_from.reset_displacement || (progress.resets && (progress.met || progress.told)))
+    if (scene.start_from->reset_displacement || (progress.resets && (progress.met || progress.told)))
       reset_displacement(), from << ", with displacements set to zero";
     start_notes.push_back(from.str());
     for (const std::string &key : changed) start_notes.push_back("since then the scene has another " + key);
@@ -254,6 +257,27 @@ void Run<dim>::heed(const Verdict &verdict) {
   recorder.write_history();
   recorder.write_snapshot();
   throw RunFailure("interrupted");
+}
+
+template <int dim>
+const Stage &Run<dim>::stage() const {
+  return scene.stage[progress.number];
+}
+
+template <int dim>
+bool Run<dim>::last_stage() const {
+  return progress.number + 1 == static_cast<int>(scene.stage.size());
+}
+
+template <int dim>
+bool Run<dim>::leads_to_factor() const {
+  return scene.stage.back().finds_factor() &&
+         std::all_of(scene.stage.begin() + progress.number, scene.stage.end(), std::mem_fn(&Stage::is_static));
+}
+
+template <int dim>
+bool Run<dim>::is_past_stage() const {
+  return clock.time > (progress.begin + stage().duration) * (1 + 1e-9);
 }
 
 template struct Run<2>;

@@ -23,10 +23,13 @@ struct Run {
   /// Collective.
   Run(MPI_Comm comm, const Scene &scene, const RunOptions &options, const std::string &mesh_file);
 
-  const Stage &stage() const { return scene.stage[progress.number]; }
-  bool last_stage() const { return progress.number + 1 == static_cast<int>(scene.stage.size()); }
+  const Stage &stage() const;
+  bool last_stage() const;
+  /// Does the run end with a factor of safety, and no motion before it? A factor does not depend on the stress from
+  /// which its search starts: then the run goes on from where stages lose equilibrium, unless their soil softens.
+  bool leads_to_factor() const;
   /// Has the present stage lasted longer than its duration, which a resumed run may shorten?
-  bool is_past_stage() const { return clock.time > (progress.begin + stage().duration) * (1 + 1e-9); }
+  bool is_past_stage() const;
   void begin_next_stage();
   /// Sums of the present state. Collective.
   Balance balance();
@@ -64,6 +67,7 @@ struct Run {
   Recorder<dim> recorder;
   StageProgress progress;
   std::unique_ptr<StopCriterion<dim>> stop;  ///< of the present stage
+  std::vector<FactorOfSafety> factors;       ///< of the stages that have looked for one since the program started
   std::string moved_before;                  ///< what `end_by_reset` has warned of last
   std::string motion_left;                   ///< at the end of the last stage; empty where soil is at rest
   std::vector<std::string> start_notes;      ///< where the state at the start is from, if not from the scene

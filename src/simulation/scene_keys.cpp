@@ -1,5 +1,6 @@
 #include "simulation/scene_keys.h"
 
+#include "earthquake/sources.h"
 #include "physics/boundary/kinds.h"
 #include "physics/laws/laws.h"
 #include "physics/pores/permeability.h"
@@ -11,10 +12,11 @@ namespace talus {
 Describer scene_keys() {
   Describer keys;
   describe_scene(keys);
-  describe_one_of<Law>(keys, "body.NAME", "law");
+  describe_one_of<Laws>(keys, "body.NAME", "law");
   describe_one_of<Retention>(keys, "body.NAME.retention", "curve");
   describe_one_of<RelativePermeability>(keys, "body.NAME.relative_permeability", "curve");
   describe_one_of<BoundaryKinds>(keys, "boundary.NAME", "kind");
+  describe_one_of<MotionSource>(keys, "earthquake.N", "kind");
   describe_one_of<IntegratorSettings>(keys, "integrator", "kind");
   return keys;
 }

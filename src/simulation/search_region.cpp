@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "meshes/polygon.h"
+#include "scene/factor_source.h"
 
 namespace talus {
 

@@ -3,9 +3,10 @@
 #include <vector>
 
 #include "base/vec.h"
-#include "scene/scene.h"
 
 namespace talus {
+
+struct FactorSource;
 
 class SearchRegion {
  public:

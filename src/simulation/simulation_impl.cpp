@@ -6,6 +6,9 @@
 #include <sstream>
 
 #include "base/freed_memory.h"
+#include "scene/body_source.h"
+#include "scene/scene.h"
+#include "scene/stage.h"
 #include "simulation/stages/stage_runner.h"
 
 namespace talus {
@@ -20,7 +23,10 @@ void Simulation<dim>::run() {
     if (run_.progress.number < 0) begin();
     hand_back_freed_memory();
     const long long before = run_.clock.steps;
-    run_stages();
+    for (;; run_.begin_next_stage()) {
+      make_stage_runner(run_)->run();
+      if (run_.last_stage()) break;
+    }
     note_state();
     note_volumes();
     run_.recorder.note_created_energy();
@@ -35,6 +41,14 @@ void Simulation<dim>::run() {
               : "nothing was left to do: the run had reached its end before it was resumed");
   });
   run_.recorder.close(run_.motion_left);
+}
+
+template <int dim>
+FactorOfSafety Simulation<dim>::factor_of_safety() {
+  if (run_.clock.steps == 0) run();
+  if (run_.factors.empty())
+    throw RunError("the scene has no stage of kind = \"factor_of_safety\" that was carried out");
+  return run_.factors.back();
 }
 
 /// What is unlikely of the state at the end. Collective.
@@ -166,7 +180,7 @@ void Simulation<dim>::begin() {
   if (run_.options.doubts_at_start)
     for (const std::string &sentence : run_.options.doubts_at_start(*this)) run_.recorder.warn(sentence);
   run_.recorder.write_history();
-  if (run_.options.gauss_points && is_static(run_.scene.stage.front().kind)) run_.statics.prepare();
+  if (run_.options.gauss_points && run_.scene.stage.front().is_static()) run_.statics.prepare();
   run_.recorder.write_snapshot();
   run_.begin_next_stage();
   run_.write_checkpoint();
@@ -182,15 +196,6 @@ void Simulation<dim>::note_bodies() {
               (dim == 2 ? " kg/m" : " kg") + (run_.world.phases.liquid ? " of grains in " : " in ") +
               std::to_string(body.particles) + " particles",
           event::body, {{"volume_m3", body.volume}, {"mass_kg", body.mass}, {"particles", body.particles}});
-}
-
-template <int dim>
-void Simulation<dim>::run_stages() {
-  while (true) {
-    make_stage_runner(run_)->run();
-    if (run_.last_stage()) return;
-    run_.begin_next_stage();
-  }
 }
 
 /// One step under the loads of the first stage.

@@ -1,8 +1,10 @@
 #pragma once
 /// A simulation of one dimension: its run, stage by stage, and what a host program asks of it.
+#include "scene/scene.h"
 #include "simulation/drains.h"
 #include "simulation/model.h"
 #include "simulation/run.h"
+#include "simulation/stages/factor_of_safety.h"
 
 namespace talus {
 
@@ -10,12 +12,14 @@ template <int dim>
 class Simulation final : public AnySimulation {
  public:
   Simulation(MPI_Comm comm, const Scene &scene, const RunOptions &options, const std::string &mesh_file)
-      : run_(comm, scene, options, mesh_file) {}
+      : run_(comm, scene, options, mesh_file) {
+    if (scene.finds_factor()) check_strength(run_.world);
+  }
 
   void run() override;
   void advance_to(double t) override;
   double single_step() override;
-  FactorOfSafety factor_of_safety() override;  // factor_of_safety.cpp
+  FactorOfSafety factor_of_safety() override;
 
   double time() const override { return run_.clock.time; }
   long long steps() const override { return run_.clock.steps; }
@@ -51,9 +55,7 @@ class Simulation final : public AnySimulation {
   void note_gaps();
   void note_water_drawn();
   void note_dilation();
-  void run_stages();
   void step_until(double t);
-  FactorOfSafety reduce_strength();
   template <class Act>
   auto told(Act &&act);
 

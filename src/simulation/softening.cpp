@@ -5,6 +5,9 @@
 #include <cmath>
 #include <limits>
 
+#include "physics/laws/frictional_strength.h"
+#include "scene/body_source.h"
+#include "scene/scene.h"
 #include "simulation/failure.h"
 
 namespace talus {
@@ -26,34 +29,16 @@ std::array<double, 2> heads(const Scene &scene, const std::vector<BodyReport> &b
 /// Slope of strength over plastic strain at its steepest, over 2 G, in a band of width `size` [m] at a mean stress
 /// [Pa].
 double slope_of(const Law &law, double size, double pressure) {
-  return std::visit(
-      [&](auto one) -> double {
-        if constexpr (requires { one.softens(); }) {
-          if (!one.softens()) return 0;
-          one.prepare();
-          const double scale = one.reference_size > 0 ? size / one.reference_size : 1;
-          const double drop = one.cohesion * std::cos(one.friction_angle) -
-                              one.residual_c * std::cos(one.residual_phi) +
-                              pressure * (std::sin(one.friction_angle) - std::sin(one.residual_phi));
-          return one.shape_factor * scale * drop / (2 * one.shear_modulus());
-        }
-        return 0;
-      },
-      law);
+  if (!softens(law)) return 0;
+  FrictionalStrength one = *frictional_strength(law);
+  one.prepare();
+  const double scale = one.reference_size > 0 ? size / one.reference_size : 1;
+  const double drop = one.cohesion * std::cos(one.friction_angle) - one.residual_c * std::cos(one.residual_phi) +
+                      pressure * (std::sin(one.friction_angle) - std::sin(one.residual_phi));
+  return one.shape_factor * scale * drop / (2 * shear_modulus(law));
 }
 
 }  // namespace
-
-bool softens(const Law &law) {
-  return std::visit(
-      [](const auto &one) {
-        if constexpr (requires { one.softens(); })
-          return one.softens();
-        else
-          return false;
-      },
-      law);
-}
 
 double critical_slip_length(double slope, double poisson_ratio, double size) {
   constexpr double universal = 1.158;  // Uenishi & Rice (2003), eq. (13): of an elastic plane

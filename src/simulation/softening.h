@@ -3,13 +3,10 @@
 #include <string>
 #include <vector>
 
-#include "physics/laws/laws.h"
+#include "physics/laws/law.h"
 #include "simulation.h"
 
 namespace talus {
-
-/// Does plastic strain take strength from the soil?
-bool softens(const Law &law);
 
 /// Softening of one body, in the middle of its height.
 struct Softening {

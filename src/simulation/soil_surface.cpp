@@ -4,6 +4,8 @@
 #include <numeric>
 #include <type_traits>
 
+#include "scene/boundary_source.h"
+#include "scene/scene.h"
 #include "simulation/world.h"
 #include "solvers/quasi_static/element_nodes.h"
 #include "solvers/quasi_static/pore_flow.h"

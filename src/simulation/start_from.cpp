@@ -8,6 +8,7 @@
 #include "scene/changes.h"
 #include "scene/quantity.h"
 #include "scene/reader.h"
+#include "scene/tables.h"
 #include "scene/words.h"
 
 namespace talus {
@@ -72,7 +73,7 @@ void check_mesh(const Scene &scene, const std::vector<std::string> &changed) {
   if (keys.empty()) return;
   const std::string first = keys[0];
   keys.erase(keys.begin());
-  scene.complain(first, "is not what it was in the run " + scene.start_from.folder +
+  scene.complain(first, "is not what it was in the run " + scene.start_from->folder +
                             " that start_from names, so that its mesh was another one" +
                             (keys.empty() ? "" : " (others too: " + join(keys) + ")") +
                             ", and its particles, stresses and contacts belong to the cells of that mesh; give it the "
@@ -82,13 +83,13 @@ void check_mesh(const Scene &scene, const std::vector<std::string> &changed) {
 /// Refuses a gravity of another size where a unit weight gives the density: the particles bring that of the other run.
 void check_unit_weights(const Scene &scene, const std::string &values_there) {
   Scene there;
-  TableReader::from_text(values_there, scene.start_from.folder).fill(there);
+  TableReader::from_text(values_there, scene.start_from->folder).fill(there);
   const double before = there.gravity_size();
   if (std::abs(scene.gravity_size() - before) <= 1e-12 * before) return;
   for (const BodySource &body : scene.body) {
     if (body.unit_weight == 0 && body.saturated_unit_weight == 0) continue;
     scene.complain("gravity",
-                   "is not the " + shortest(before) + " m/s2 of the run " + scene.start_from.folder +
+                   "is not the " + shortest(before) + " m/s2 of the run " + scene.start_from->folder +
                        " that start_from names, and with it the unit weights of " + body.name +
                        " stand for another density than that of its particles, which come from there; give density, or "
                        "porosity and grain_density, in place of unit weights, and run that scene again so");
@@ -106,8 +107,9 @@ std::vector<std::string> check_start(const Scene &scene, const CheckpointHeader 
   for (const std::string &path : changed) {
     const Words words = split(path);
     if (const std::string tie = tie_of(words, scene.phases); !tie.empty())
-      scene.complain(path, "is not what it was in the run " + scene.start_from.folder + " that start_from names, and " +
-                               tie + "; give it the value that it has there, or run that scene again with this one");
+      scene.complain(path, "is not what it was in the run " + scene.start_from->folder +
+                               " that start_from names, and " + tie +
+                               "; give it the value that it has there, or run that scene again with this one");
     if (words[0] == "gravity") check_unit_weights(scene, found.scene);
     if (words[0] == "body" || words[0] == "boundary" || words[0] == "water" || words[0] == "transfer" ||
         words[0] == "integrator" || words[0] == "gravity" || words[0] == "quasi_static")
@@ -122,7 +124,7 @@ void check_strength_by_place(const Scene &scene, const std::string &body, const 
     const Words words = split(path);
     if (words[0] != "body" || words[1] != body) continue;
     if (words[2].find("cohesion") != std::string::npos || words[2].find("friction_angle") != std::string::npos)
-      scene.complain(path, "is not what it was in the run " + scene.start_from.folder +
+      scene.complain(path, "is not what it was in the run " + scene.start_from->folder +
                                " that start_from names, and strength that varies with place stays with the particles; "
                                "give it the value that it has there, or run that scene again with this one");
   }

@@ -4,9 +4,10 @@
 #include <vector>
 
 #include "output/checkpoint.h"
-#include "scene/scene.h"
 
 namespace talus {
+
+struct Scene;
 
 /// Refuses what the state of the other run does not admit: SceneError at the key, std::invalid_argument with the cause
 /// where it is none of the scene. Returns the keys that are others, without those of stages and results.

@@ -11,7 +11,13 @@
 #include "output/together.h"
 #include "physics/boundary/boundary.h"
 #include "physics/pores/soil_pores.h"
+#include "scene/body_source.h"
+#include "scene/boundary_source.h"
+#include "scene/quasi_static_source.h"
 #include "scene/reader.h"
+#include "scene/scene.h"
+#include "scene/stage.h"
+#include "scene/water_source.h"
 #include "scene/words.h"
 #include "simulation/softening.h"
 #include "solvers/quasi_static/thin_bodies.h"
@@ -42,7 +48,7 @@ Statics<dim>::Statics(World<dim> &world, const Clock &clock) : world_(world), cl
                                                                        group + "\"; " +
                                                                        suggestion(group, world.mesh.group_names()));
   for (const BodySource &body : world.scene.body)  // curves that the motion of drained soil does without
-    (void)SoilPores(body, world.scene.water.density, world.scene.water.viscosity);
+    (void)SoilPores(body, world.scene.water->density, world.scene.water->viscosity);
 }
 
 template <int dim>
@@ -52,7 +58,7 @@ void Statics<dim>::make() {
   data.density = [this](const BodySource &source, const Vec<dim> &x, double t) {
     return world_.soil_density(source, x, t);
   };
-  data.open_water_load = world_.scene.water.open_water_load;
+  data.open_water_load = world_.scene.water->open_water_load;
   if (world_.phases.prescribed) {
     data.pressure = [this](const Vec<dim> &x, double t, int soil) { return world_.pressure(x, t, soil); };
     data.apart = [this](int soil) { return world_.pressure.apart(soil); };
@@ -97,7 +103,7 @@ PetscErrorCode Statics<dim>::activate() {
   if (world_.phases.prescribed)
     if (flow_)
       PetscCall(flow_->activate(problem_->soil().active(), [this](const Vec<dim> &x) {
-        const Function &suction = world_.scene.water.suction;
+        const Function &suction = world_.scene.water->suction;
         const double above = suction.given() ? suction(x[0], x[1], dim == 3 ? x[dim - 1] : 0, clock_.load_time)
                                              : world_.pressure.above_table(x, clock_.load_time);
         return world_.pressure(x, clock_.load_time, common_water) -
@@ -125,7 +131,7 @@ void Statics<dim>::begin_stage(const Stage &stage, bool soil_moves) {
   require(world_.fix_dashpots(true, clock_.time));
   current_ = true, moved_since_ = false;
   check_supports(soil_moves);
-  if (stage.initial_stress == InitialStress::k0) start_stress();
+  if (stage.begins_at_rest()) start_stress();
   imposed_ += strain_energy() - before;
   problem_->set_acceleration(world_.scene.acceleration_in(stage));
   require(problem_->begin_path(clock_.load_time));
@@ -203,7 +209,7 @@ void Statics<dim>::use_seeped_pressure() {
   }
   std::vector<SoilPores> pores;
   for (const BodySource &body : world_.scene.body)  // all of them have a curve, or none
-    if (body.retention.reader) pores.emplace_back(body, world_.scene.water.density, world_.scene.water.viscosity);
+    if (body.retention.reader) pores.emplace_back(body, world_.scene.water->density, world_.scene.water->viscosity);
   typename PrescribedPressure<dim>::Saturation saturation;
   if (!pores.empty())
     saturation = [found, pores, first = world_.scene.body.data()](const BodySource &body, const double *x) {
@@ -299,7 +305,7 @@ void Statics<dim>::to_particles() {
   if (world_.motion->gathered()) require(world_.release(clock_.time));
   const bool anew = problem_->soil().restarted();
   for (size_t b = 0; b < world_.bodies.size(); ++b) {
-    const ParticleArrays<dim> &p = world_.bodies[b]->particles();
+    ParticleArrays<dim> &p = world_.bodies[b]->particles();
     const int memory = world_.bodies[b]->history_count();
     for (int i = 0; i < p.count; ++i) {
       const int cell = p.cell[i];
@@ -456,6 +462,11 @@ void Statics<dim>::each_gauss_point(
             Invariants<dim>(strain).q * std::sqrt(4. / 3));
     }
   }
+}
+
+template <int dim>
+Elements Statics<dim>::elements() const {
+  return world_.scene.finds_factor() ? Elements::quadratic : world_.scene.quasi_static->elements;
 }
 
 template class Statics<2>;

@@ -73,12 +73,9 @@ class Statics {
   /// Collective.
   std::vector<double> inflow() const;
 
-  /// A factor of safety is wanted. It does not depend on the stress from which its search starts: the run goes on from
-  /// where stages lose equilibrium, unless their soil softens.
-  bool for_factor = false;
-  /// Elements of first order make factors too large: a factor of safety has always those of second order.
-  Elements elements() const { return for_factor ? Elements::quadratic : world_.scene.quasi_static.elements; }
-  std::vector<std::string> lost_stages;  ///< names of these stages
+  /// Elements of first order make factors too large: a scene that looks for one has always those of second order.
+  Elements elements() const;
+  std::vector<std::string> lost_stages;  ///< names of stages that lost equilibrium, in a run that leads to a factor
   bool dilated = false;                  ///< a stage found its equilibrium with psi = phi, see settle_propped
   /// What motion had done to the soil when the stage under way began.
   struct Moved {

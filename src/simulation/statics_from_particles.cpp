@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "output/together.h"
+#include "scene/scene.h"
 #include "simulation/statics.h"
 
 namespace talus {
@@ -49,7 +50,7 @@ void Statics<dim>::check_places() const {
     const ParticleArrays<dim> &p = world_.bodies[b]->particles();
     for (int i = 0; i < p.count && body.empty(); ++i)
       if (problem_->soil().body_of(p.cell[i]) != static_cast<int>(b))
-        body = world_.scene.body[b].name, where = p.position[i];
+        body = world_.bodies[b]->name(), where = p.position[i];
   }
   const std::string place = place_of_first<dim>(world_.comm, !body.empty(), where);
   if (!place.empty())

@@ -2,6 +2,7 @@
 
 #include "physics/phase_models.h"
 #include "scene/quantity.h"
+#include "scene/scene.h"
 #include "simulation/softening.h"
 
 namespace talus {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "physics/laws/laws.h"
+#include "physics/laws/law.h"
 #include "scene/scene.h"
 #include "simulation.h"
 #include "solvers/integrators.h"

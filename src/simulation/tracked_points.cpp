@@ -5,7 +5,9 @@
 #include <limits>
 #include <sstream>
 
+#include "scene/output_source.h"
 #include "scene/reader.h"
+#include "scene/scene.h"
 
 namespace talus {
 
@@ -33,7 +35,7 @@ TrackedPoints<dim>::TrackedPoints(const World<dim> &world, std::array<double, 2>
       corner == std::array<double, 2>{}
           ? ""
           : "; x and y count from the corner of the mesh, which is at " + in_words(corner.data(), 2) + " of the map";
-  for (const OutputPoint &wanted : world_.scene.output.point) {
+  for (const OutputPoint &wanted : world_.scene.output->point) {
     Vec<dim> place;
     std::copy_n(wanted.position.begin(), dim, place.begin());
     const Found found = nearest_particle(wanted.name, place);

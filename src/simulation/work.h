@@ -6,9 +6,9 @@
 /// therefore does the same whenever it is repeated.
 #include <cmath>
 
-#include "scene/scene.h"
-
 namespace talus {
+
+struct Transfer;
 
 /// What causes work, of a cell or of a rank.
 struct WorkCounts {
@@ -20,10 +20,7 @@ struct WorkCounts {
 
 class WorkRates {
  public:
-  explicit WorkRates(const Transfer &settings) {
-    if (settings.remap_interval == 0) usual_steps_ = 1;
-    if (!settings.average_stress) step_of_cell_ = 2, step_of_particle_ = 1.5;
-  }
+  explicit WorkRates(const Transfer &settings);
   /// Of a step where there are `steps` of them from one remap to the next.
   double of(const WorkCounts &c, double steps) const {
     return (c.particles + of_run * c.runs + of_cell * c.cells + of_mover * c.movers) / steps + step_of_cell_ * c.cells +

@@ -9,6 +9,10 @@
 #include <sstream>
 
 #include "base/sum.h"
+#include "scene/body_source.h"
+#include "scene/mesh_source.h"
+#include "scene/scene.h"
+#include "scene/stage.h"
 #include "solvers/quasi_static/pore_flow.h"
 #include "solvers/quasi_static/thin_bodies.h"
 
@@ -42,14 +46,14 @@ void World<dim>::choose_bodies(const Stage &stage, const Clock &clock) {
   const int stride = id_stride();
   for (size_t b = 0; b < bodies.size(); ++b) {
     const std::string &name = scene.body[b].name;
-    if (std::count(stage.add.begin(), stage.add.end(), name) && !present[b]) {
+    if (stage.adds(name) && !present[b]) {
       present[b] = 1;
       seed<dim>(*bodies[b], mesh, stride,
                 [&](const Vec<dim> &x) { return soil_density(scene.body[b], x, clock.load_time); });
       conditions.surface_loads().seed(*bodies[b], mesh);
       require(bodies[b]->sort(mesh.cell_count()));
     }
-    if (std::count(stage.remove.begin(), stage.remove.end(), name) && present[b]) {
+    if (stage.removes(name) && present[b]) {
       present[b] = 0;
       require(bodies[b]->resize(0));
     }
@@ -59,15 +63,19 @@ void World<dim>::choose_bodies(const Stage &stage, const Clock &clock) {
 
 template <int dim>
 void World<dim>::set_loading(const Stage &stage, double stage_time, const Clock &clock) {
-  const double ramp = stage.gravity_ramp > 0 ? std::min(1., stage_time / stage.gravity_ramp) : 1;
+  const double whole_at = stage.gravity_ramp(), ramp = whole_at > 0 ? std::min(1., stage_time / whole_at) : 1;
   const std::array<double, 3> acceleration = scene.acceleration_in(stage);
   std::copy_n(acceleration.begin(), dim, motion->loading.gravity.begin());
   motion->loading.ramp = ramp;
-  motion->loading.ramp_rate = ramp < 1 ? 1 / stage.gravity_ramp : 0;
+  motion->loading.ramp_rate = ramp < 1 ? 1 / whole_at : 0;
   motion->loading.set_at = clock.time;
   motion->loading.time_rate = stage.hold_loads ? 0 : 1;
   motion->loading.time = clock.load_time;
-  motion->loading.damping = stage.damping;
+  motion->loading.damping = stage.damping();
+  motion->loading.shaking = stage.shakes() ? &shaking : nullptr;
+  motion->loading.shaken_since = clock.time - stage_time;
+  motion->loading.in_frame_of_base = std::ranges::none_of(
+      conditions.sources(), [](const Source &source) { return source.kind.incoming_wave; });
   motion->loading.softening = stage.softening;
   conditions.bases().remember_slip(stage.softening);
   motion->loading.pore_flow = stage.pore_flow;
@@ -122,24 +130,39 @@ std::string World<dim>::thrown(double speed) const {
   return text.str();
 }
 
+template <int dim>
+int World<dim>::group_of(int cell, int face) {
+  if (face_groups_.empty()) {
+    const std::vector<std::string> &names = mesh.group_names();
+    for (std::size_t g = 0; g < names.size(); ++g)
+      for (const Facet<dim> &facet : mesh.facets(names[g]))
+        face_groups_.insert({{facet.cell, facet.face}, static_cast<int>(g)});
+  }
+  const auto found = face_groups_.find({cell, face});
+  return found == face_groups_.end() ? -1 : found->second;
+}
+
 /// Particles that left the mesh: out of the bodies and into the ledger, or the end of the run.
 template <int dim>
 PetscErrorCode World<dim>::take_out(double time) {
   PetscFunctionBeginUser;
-  if (scene.mesh.leaving_particles == WhenOutside::stop) {
+  if (scene.mesh->leaving_particles == WhenOutside::stop) {
     size_t b = 0;
     while (b < bodies.size() && outside_[b].empty()) ++b;
     const bool mine = b < bodies.size();
     const std::string place =
-        place_of_first<dim>(comm, mine, mine ? bodies[b]->particles().position[outside_[b][0]] : Vec<dim>{});
-    const double speed = mine ? map<dim>(bodies[b]->particles().velocity[outside_[b][0]]).norm() : 0;
+        place_of_first<dim>(comm, mine, mine ? bodies[b]->particles().position[outside_[b][0].particle] : Vec<dim>{});
+    const double speed = mine ? map<dim>(bodies[b]->particles().velocity[outside_[b][0].particle]).norm() : 0;
     throw MotionFailure("a particle left the mesh near " + place + text_of_first(comm, mine, thrown(speed)) +
                         "; add free space there, or a boundary that keeps soil in, or set mesh.leaving_particles = "
                         "\"remove\", which takes out what leaves (also with --resume)");
   }
   for (size_t b = 0; b < bodies.size(); ++b) {
-    const std::vector<int> &gone = outside_[b];
-    escaped.enter(*bodies[b], static_cast<int>(b), gone, time);
+    std::vector<int> gone;
+    for (const auto &[particle, cell, face] : outside_[b]) {
+      escaped.enter(*bodies[b], static_cast<int>(b), particle, group_of(cell, face), time);
+      gone.push_back(particle);
+    }
     size_t before = 0;  // of those that are gone
     for (int &i : movers_[b]) {
       while (before < gone.size() && gone[before] < i) ++before;
@@ -187,13 +210,13 @@ void World<dim>::reset_displacement(double time) {
   if (motion->gathered()) require(release(time));
   conditions.bases().forget_slip();
   for (const auto &body : bodies) {
-    const ParticleArrays<dim> &p = body->particles();
-    std::copy_n(p.position, p.count, p.reference);
-    std::fill_n(p.velocity, p.count, Vec<dim>{});
+    ParticleArrays<dim> &p = body->particles();
+    std::copy_n(p.position.data(), p.count, p.reference.data());
+    std::fill_n(p.velocity.data(), p.count, Vec<dim>{});
     const auto fields = history_fields(body->law());
     for (size_t k = 0; k < fields.size(); ++k)
       for (int i = 0; !fields[k].kept && i < p.count; ++i) p.history[i * fields.size() + k] = 0;
-    for (int a = 0; a < phases.fluids(); ++a) std::fill_n(p.fluid_velocity[a], p.count, Vec<dim>{});
+    for (int a = 0; a < phases.fluids(); ++a) std::fill_n(p.fluid_velocity[a].data(), p.count, Vec<dim>{});
   }
 }
 
@@ -366,6 +389,10 @@ PetscErrorCode World<dim>::serialize(Archive &archive) {
   archive.sums("movers", counts_.movers);
   if (archive.reading()) count_runs();
   PetscFunctionReturn(0);
+}
+
+bool has_flow_stages(const Scene &scene) {
+  return std::any_of(scene.stage.begin(), scene.stage.end(), [](const Stage &s) { return s.water_flows(); });
 }
 
 template class World<2>;

@@ -3,8 +3,10 @@
 /// and no files: times are handed in.
 #include <array>
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "particles/escaped_particles.h"
@@ -13,14 +15,18 @@
 #include "physics/laws/strength_by_place.h"
 #include "physics/phase_models.h"
 #include "physics/prescribed_pressure.h"
+#include "scene/scene.h"
 #include "simulation.h"
 #include "simulation/clock.h"
 #include "simulation/failure.h"
 #include "simulation/overburden.h"
 #include "simulation/work.h"
 #include "solvers/critical_step.h"
+#include "transfer/transfer.h"
 
 namespace talus {
+
+struct Stage;
 
 template <int dim>
 class World {
@@ -99,6 +105,7 @@ class World {
   std::array<std::array<double, 3>, 2> mesh_box{};  ///< corners of the box around it, of all ranks [m]
   MPI_Comm comm;
   PrescribedPressure<dim> pressure;  ///< of drained scenes
+  const GroundShaking shaking;       ///< of stages in which the base moves
   std::vector<std::unique_ptr<Body<dim>>> bodies;
   std::vector<char> present;  ///< bodies that are there now
   Conditions<dim> conditions;
@@ -119,6 +126,7 @@ class World {
   void check_quasi_static_base(const std::string &path) const;      // world_checks.cpp
   void check_fresh_base(const std::string &path) const;             // world_checks.cpp
   void check_something_acts(const std::vector<Source> &) const;     // world_checks.cpp
+  void check_earthquake() const;                                    // world_checks.cpp
   void check_boxes() const;                                         // world_checks.cpp
   void check_one_of_two(const std::vector<Source> &) const;         // world_checks.cpp
   void check_seeded(const Body<dim> &, const std::string &) const;  // world_checks.cpp
@@ -137,6 +145,8 @@ class World {
   void count_movers();  ///< after a release
   PetscErrorCode take_out(double time);
   std::string thrown(double speed) const;
+  /// The first group of a face of a local cell; -1: none.
+  int group_of(int cell, int face);
 
   std::vector<CriticalStep<dim>> critical_;
   double wave_speed_ = 0;         ///< the largest of the bodies [m/s]
@@ -144,18 +154,17 @@ class World {
   double fastest_fall_ = 0;       ///< through the mesh, with the largest velocity at the start [m/s]
   double depth_on_bases_ = 0;     ///< of elastic soil at the start [m]
   const WorkRates rates_;
-  WorkCounts counts_;                      ///< runs and movers of this rank; the rest is counted where it is asked for
-  std::vector<int> cells_of_movers_;       ///< into which they went at the last release
-  double seeded_mass_ = 0;                 ///< of all ranks [kg]
-  long long seeded_particles_ = 0;         ///< of all ranks
-  std::vector<std::vector<int>> movers_;   ///< [body] particles that left their cells at the last release ...
-  std::vector<std::vector<int>> outside_;  ///< ... and those of them that left the mesh
+  WorkCounts counts_;                     ///< runs and movers of this rank; the rest is counted where it is asked for
+  std::vector<int> cells_of_movers_;      ///< into which they went at the last release
+  double seeded_mass_ = 0;                ///< of all ranks [kg]
+  long long seeded_particles_ = 0;        ///< of all ranks
+  std::vector<std::vector<int>> movers_;  ///< [body] particles that left their cells at the last release ...
+  std::vector<std::vector<LeftMesh>> outside_;      ///< ... and those of them that left the mesh
+  std::map<std::pair<int, int>, int> face_groups_;  ///< by cell and face; found when particles leave the mesh
   long long releases_ = 0;
 };
 
 /// Do seepage or consolidation stages let pore water flow?
-inline bool has_flow_stages(const Scene &scene) {
-  return std::any_of(scene.stage.begin(), scene.stage.end(), [](const Stage &s) { return water_flows(s.kind); });
-}
+bool has_flow_stages(const Scene &scene);
 
 }  // namespace talus

@@ -5,7 +5,14 @@
 
 #include "physics/boundary/pore_conditions.h"
 #include "physics/boundary/prescribed_directions.h"
+#include "scene/body_source.h"
+#include "scene/mesh_source.h"
+#include "scene/output_source.h"
+#include "scene/quasi_static_source.h"
 #include "scene/reader.h"
+#include "scene/scene.h"
+#include "scene/stage.h"
+#include "scene/water_source.h"
 #include "scene/words.h"
 #include "simulation/drains.h"
 #include "simulation/world.h"
@@ -50,6 +57,15 @@ void World<dim>::check_bodies() const {
   check_boxes();
 }
 
+template <int dim>
+void World<dim>::check_earthquake() const {
+  for (std::size_t k = 0; k < scene.stage.size(); ++k)
+    if (scene.stage[k].shakes() && scene.stage[k].duration < shaking.duration() * (1 - 1e-9))
+      scene.complain("stage." + std::to_string(k) + ".duration",
+                     "must not be shorter than the motion of the ground, " + rounded(shaking.duration()) +
+                         " s; earthquake.begin and end take a part of a record");
+}
+
 /// Boxes in which there is nothing.
 template <int dim>
 void World<dim>::check_boxes() const {
@@ -57,8 +73,8 @@ void World<dim>::check_boxes() const {
     MPI_Allreduce(MPI_IN_PLACE, &found, 1, MPI_INT, MPI_MAX, comm);
     if (!found) scene.complain(path, why);
   };
-  for (size_t k = 0; k < scene.mesh.refine.size(); ++k) {
-    const RefineBox &box = scene.mesh.refine[k];
+  for (size_t k = 0; k < scene.mesh->refine.size(); ++k) {
+    const RefineBox &box = scene.mesh->refine[k];
     int found = 0;  // cells are refined by x and y, for all z
     for (const Cell<dim> &cell : mesh.cells) {
       bool overlaps = true;
@@ -102,9 +118,9 @@ void World<dim>::check_something_acts(const std::vector<Source> &sources) const 
     return source.kind.in_motion == OnSoil::load || source.kind.template on_soil<dim>().speed ||
            source.kind.fluid_face();
   });
-  if (moved || pushed || scene.gravity_size() > 0 || scene.water.given || scene.gas.given) return;
+  if (moved || pushed || scene.gravity_size() > 0 || scene.water->given || scene.gas->given) return;
   for (size_t k = 0; k < scene.stage.size(); ++k)
-    if (scene.stage[k].until == StopWhen::equilibrium || scene.stage[k].until == StopWhen::rest)
+    if (scene.stage[k].stop().waits_for_loads)
       scene.complain("stage." + std::to_string(k) + ".until",
                      "waits for soil on which nothing acts: give gravity, or a boundary that loads or moves the soil");
 }
@@ -158,7 +174,7 @@ void World<dim>::check_quasi_static_base(const std::string &path) const {
   if (phases.liquid)
     scene.complain(path + ".kind", std::string("has no quasi-static form where pore fluids move (phases = \"") +
                                        phases.name + "\"): take roller or fixed, or a dynamic stage");
-  if (dim == 3 && scene.quasi_static.elements == Elements::quadratic)
+  if (dim == 3 && scene.quasi_static->elements == Elements::quadratic)
     scene.complain("quasi_static.elements",
                    "must be \"patches\" or \"linear\" in 3D with " + path +
                        ", a base with friction: the corners of facets of second order bear nothing");
@@ -169,9 +185,9 @@ template <int dim>
 void World<dim>::check_fresh_base(const std::string &path) const {
   const Stage *changes = nullptr;
   for (const Stage &stage : scene.stage) {
-    if (stage.kind == StageKind::dynamic && stage.softening) changes = &stage;
+    if (!stage.is_static() && stage.softening) changes = &stage;
     if (stage.reset_displacement) changes = nullptr;
-    if (changes && is_static(stage.kind) && stage.kind != StageKind::seepage)
+    if (changes && stage.settles_soil())
       scene.complain(path + ".kind", "depends on the slip of the base, which finite elements do not know: stage " +
                                          stage.name + " cannot follow the motion of stage " + changes->name +
                                          "; put it before, set softening = false or reset_displacement = true there, "
@@ -183,7 +199,7 @@ template <int dim>
 void World<dim>::check_boundaries(const std::vector<Source> &sources) const {
   check_something_acts(sources);
   const bool quasi_static =
-      std::any_of(scene.stage.begin(), scene.stage.end(), [](const Stage &stage) { return is_static(stage.kind); });
+      std::any_of(scene.stage.begin(), scene.stage.end(), [](const Stage &stage) { return stage.is_static(); });
   for (const auto &source : sources) {
     const std::string path = "boundary." + source.name;
     std::vector<std::string> groups = mesh.group_names();
@@ -192,7 +208,7 @@ void World<dim>::check_boundaries(const std::vector<Source> &sources) const {
       if (std::ranges::count(groups, group) == 0)
         scene.complain(path + ".group",
                        "must name groups of facets; the mesh has no \"" + group + "\"; " + suggestion(group, groups));
-    for (const OutputPoint &point : scene.output.point)
+    for (const OutputPoint &point : scene.output->point)
       if (point.name == source.name && source.kind.in_motion == OnSoil::load)
         scene.complain("output.point." + point.name,
                        "has the name of boundary." + source.name +
@@ -216,7 +232,7 @@ void World<dim>::check_boundaries(const std::vector<Source> &sources) const {
       scene.complain(path + ".kind", "has no quasi-static form; take fixed, roller, velocity or traction");
     if (quasi_static && source.kind.quasi_static == OnSoil::contact) check_quasi_static_base(path);
     if (quasi_static && source.kind.remembers) check_fresh_base(path);
-    if (source.kind.in_motion == OnSoil::contact && phases.prescribed && !scene.water.open_water_load)
+    if (source.kind.in_motion == OnSoil::contact && phases.prescribed && !scene.water->open_water_load)
       scene.complain(path + ".kind",
                      "rubs with effective stress, which it does not know with water.open_water_load = false; leave "
                      "open_water_load at true, and where no open water shall rest on a face let the water table of the "
@@ -251,6 +267,8 @@ template void World<2>::check_bodies() const;
 template void World<3>::check_bodies() const;
 template void World<2>::check_boundaries(const std::vector<Source> &) const;
 template void World<3>::check_boundaries(const std::vector<Source> &) const;
+template void World<2>::check_earthquake() const;
+template void World<3>::check_earthquake() const;
 template void World<2>::check_seeded(const Body<2> &, const std::string &) const;
 template void World<3>::check_seeded(const Body<3> &, const std::string &) const;
 

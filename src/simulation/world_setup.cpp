@@ -5,8 +5,15 @@
 
 #include "base/freed_memory.h"
 #include "base/sum.h"
+#include "scene/body_source.h"
+#include "scene/boundary_source.h"
+#include "scene/mesh_source.h"
 #include "scene/place_grid.h"
 #include "scene/reader.h"
+#include "scene/scene.h"
+#include "scene/stage.h"
+#include "scene/transfer_source.h"
+#include "scene/water_source.h"
 #include "simulation/gap_walls.h"
 #include "simulation/world.h"
 #include "solvers/quasi_static/pore_flow.h"
@@ -15,13 +22,14 @@ namespace talus {
 
 template <int dim>
 World<dim>::World(MPI_Comm world, const Scene &of, DM plex, const std::string &mesh_file, const Cuts &cuts)
-    : scene(of), phases(phase_traits(of.phases)), comm(world), pressure(of), rates_(of.transfer) {
+    : scene(of), phases(phase_traits(of.phases)), comm(world), pressure(of), shaking(of.earthquake), rates_(*of.transfer) {
   read_laws();
   std::vector<Source> sources = read_sources();
   read_mesh(plex, mesh_file, cuts);
   check_bodies();
   find_strengths();
   check_boundaries(sources);
+  check_earthquake();
   require(conditions.setup(mesh, std::move(sources)));
   check_gap_walls(*this);
   conditions.use_stand_ins(scene.stage.front().hold_loads);
@@ -119,11 +127,11 @@ void World<dim>::read_mesh(DM plex, const std::string &mesh_file, const Cuts &cu
     mesh = BackgroundMesh<dim>::adopt(plex);
   else
     try {
-      mesh = BackgroundMesh<dim>::read(comm, mesh_file, weights, cuts, scene.mesh.halvings, seeds);
+      mesh = BackgroundMesh<dim>::read(comm, mesh_file, weights, cuts, scene.mesh->halvings, seeds);
     } catch (const std::invalid_argument &error) {
-      scene.complain(!scene.mesh.file.empty()      ? "mesh.file"
-                     : !scene.mesh.section.empty() ? "mesh.section"
-                                                   : "mesh.terrain",
+      scene.complain(!scene.mesh->file.empty()      ? "mesh.file"
+                     : !scene.mesh->section.empty() ? "mesh.section"
+                                                    : "mesh.terrain",
                      std::string("cannot serve: ") + error.what());
     }
   comm = mesh.comm();
@@ -149,7 +157,7 @@ double World<dim>::soil_density(const BodySource &source, const Vec<dim> &x, dou
   const int soil = static_cast<int>(&source - scene.body.data());
   double density = (1 - source.porosity) *
                    source.grain_density;  // where fluids move on their own, particles' mass is that of the grains
-  if (phases.prescribed) density += source.porosity * scene.water.density * pressure.saturation(source, x, t, soil);
+  if (phases.prescribed) density += source.porosity * scene.water->density * pressure.saturation(source, x, t, soil);
   return density;
 }
 
@@ -229,7 +237,7 @@ template <int dim>
 void World<dim>::settle_bodies() {
   conditions.surface_loads().share(mesh, cells_of_bodies([](size_t) { return true; }));
   smallest_altitude_ = mesh.report().smallest_altitude;
-  critical_.clear();
+  critical_.clear(), face_groups_.clear();
   for (size_t b = 0; b < scene.body.size(); ++b) {
     const BodySource &source = scene.body[b];
     double density = 0;  // where its soil is heaviest
@@ -255,7 +263,7 @@ void World<dim>::close_bases() {
 
 template <int dim>
 void World<dim>::make_motion() {
-  const double relaxation = scene.transfer.relaxation * smallest_altitude_ / wave_speed_;
+  const double relaxation = scene.transfer->relaxation * smallest_altitude_ / wave_speed_;
   motion = make_soil_motion(
       MotionParts<dim>{mesh, bodies, conditions, scene, pressure, relaxation, seeded_mass_, seeded_particles_});
 }
@@ -293,7 +301,7 @@ void World<dim>::seed_bodies() {
     require(relocate<dim>(body, mesh, movers_[b], outside_[b]));
     const bool lost = !outside_[b].empty();
     const std::string outside =
-        place_of_first<dim>(comm, lost, lost ? body.particles().position[outside_[b][0]] : Vec<dim>{});
+        place_of_first<dim>(comm, lost, lost ? body.particles().position[outside_[b][0].particle] : Vec<dim>{});
     if (!outside.empty()) scene.complain(path + ".displacement", "takes particles out of the mesh near " + outside);
     require(body.sort(mesh.cell_count()));
   }
@@ -333,9 +341,8 @@ void World<dim>::find_fastest_fall() {
 /// Does a stage add or remove the body?
 template <int dim>
 bool World<dim>::comes_or_goes(const BodySource &body) const {
-  return std::ranges::any_of(scene.stage, [&](const Stage &stage) {
-    return std::ranges::count(stage.add, body.name) || std::ranges::count(stage.remove, body.name);
-  });
+  return std::ranges::any_of(scene.stage,
+                             [&](const Stage &stage) { return stage.adds(body.name) || stage.removes(body.name); });
 }
 
 template <int dim>
@@ -343,7 +350,7 @@ std::vector<char> World<dim>::present_at_start() const {
   std::vector<char> there(scene.body.size(), 1);
   for (const Stage &stage : scene.stage)
     for (size_t b = 0; b < scene.body.size(); ++b)
-      if (std::count(stage.add.begin(), stage.add.end(), scene.body[b].name)) there[b] = 0;
+      if (stage.adds(scene.body[b].name)) there[b] = 0;
   return there;
 }
 

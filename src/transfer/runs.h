@@ -40,7 +40,7 @@ class RunFromNodes {
  public:
   static constexpr int vertices = dim + 1, components = stress_size<dim>;
 
-  [[gnu::always_inline]] RunFromNodes(const Body<dim> &body, const Lagrangian<dim> &from, int mesh_cell)
+  [[gnu::always_inline]] RunFromNodes(Body<dim> &body, const Lagrangian<dim> &from, int mesh_cell)
       : coordinates(from.grid.mesh().cells[mesh_cell]),
         body_(body),
         flip_(quad(from.flip)),
@@ -70,7 +70,7 @@ class RunFromNodes {
     double pores;      ///< their volume, before the cap of the particle's [m3]
   };
   [[gnu::always_inline]] Moved move(int i) const {
-    const ParticleArrays<dim> &p = body_.particles();
+    ParticleArrays<dim> &p = body_.particles();
     Quad v = flip_ * load<dim>(p.velocity[i].data()), x = load<dim>(p.position[i].data());
     const Quad n = coordinates(x);
 #pragma GCC unroll 8
@@ -102,7 +102,7 @@ class RunFromNodes {
   }
   /// Values of the history that `move` leaves for later, of particles first to last - 1.
   void move_rest(int first, int last) const {
-    const ParticleArrays<dim> &p = body_.particles();
+    ParticleArrays<dim> &p = body_.particles();
     const int count = body_.history_count();
     if constexpr (averaged)
       for (int i = first; i < last; ++i)
@@ -122,7 +122,7 @@ class RunFromNodes {
   const double *content = nullptr;  ///< of its pores, of each fluid [kg/m3]
 
  private:
-  const Body<dim> &body_;
+  Body<dim> &body_;
   const Quad flip_;
   const double over_density_;
   const double *point_mass_[fluids ? fluids : 1]{};

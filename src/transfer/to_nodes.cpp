@@ -22,20 +22,44 @@ void gather(const Body<dim> &body, FilledGrid<dim> &grid, Vec<dim> *momentum, Po
   }
 }
 
+/// Shares of strength at the stress points: means of those of the particles, weighted by volume.
+template <int dim>
+void average_shares(const ParticleArrays<dim> &p, PointSet &points) {
+  std::fill_n(points.own_cohesion_share.begin(), points.count, 0.);
+  std::fill_n(points.own_friction_share.begin(), points.count, 0.);
+  for (int i = 0; i < p.count; ++i) {
+    const int q = points.find(p.cell[i]);
+    const double weight = p.volume[i] / points.own_volume[q];
+    points.own_cohesion_share[q] += weight * p.cohesion_share[i];
+    points.own_friction_share[q] += weight * p.friction_share[i];
+  }
+}
+
+/// Lets each particle be a point of its own.
+template <int dim>
+void take_particles(const ParticleArrays<dim> &p, const FilledGrid<dim> &grid, PointSet &points) {
+  points.own_cell.resize(std::max<size_t>(points.own_cell.size(), p.count));
+  for (int i = 0; i < p.count; ++i) points.own_cell[i] = grid.find_cell(p.cell[i]);
+  points.count = p.count;
+}
+
 }  // namespace
 
 template <int dim, bool averaged, int fluids>
 void to_nodes(const Body<dim> &body, FilledGrid<dim> &grid, Vec<dim> *momentum, PointSet &points,
               const Pores<dim> &pores, const std::vector<int> *only) {
+  const ParticleArrays<dim> &p = body.particles();
   if (only)
     gather<dim, averaged, fluids>(body, grid, momentum, points, pores, static_cast<int>(only->size()),
                                   [only](int j) { return (*only)[j]; });
   else
-    gather<dim, averaged, fluids>(body, grid, momentum, points, pores, body.particles().count, [](int j) { return j; });
-  if constexpr (averaged)
+    gather<dim, averaged, fluids>(body, grid, momentum, points, pores, p.count, [](int j) { return j; });
+  if constexpr (averaged) {
     points.start(stress_size<dim>, body.history_count());
-  else
-    for (int i = 0; i < body.particles().count; ++i) points.own_cell[i] = grid.find_cell(body.particles().cell[i]);
+    if (p.cohesion_share) average_shares(p, points);
+  } else {
+    take_particles(p, grid, points);
+  }
 }
 
 #define TALUS_TO_NODES(dim, averaged, fluids)                                                                 \

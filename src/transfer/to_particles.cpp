@@ -56,9 +56,10 @@ void to_next_nodes(Body<dim> &body, const Lagrangian<dim> &from, FilledGrid<dim>
 
 template <int dim>
 PetscErrorCode relocate(Body<dim> &body, const BackgroundMesh<dim> &mesh, std::vector<int> &movers,
-                        std::vector<int> &outside) {
+                        std::vector<LeftMesh> &outside) {
   PetscFunctionBeginUser;
-  constexpr PetscInt no_cell = std::numeric_limits<PetscInt>::min();  // outlives a migration, as complements do
+  // a cell from here up to half of it is the face by which a particle left; outlives a migration, as complements do
+  constexpr PetscInt outside_from = std::numeric_limits<PetscInt>::min();
   std::vector<std::pair<int, int>>
       leavers;  // allocated only when particles change rank, as the swarm's own buffers are
   const bool alone = mesh.partition_faces.empty();
@@ -69,11 +70,11 @@ PetscErrorCode relocate(Body<dim> &body, const BackgroundMesh<dim> &mesh, std::v
   PetscCallMPI(MPI_Comm_size(mesh.comm(), &ranks));
   while (true) {
     leavers.clear();
-    const ParticleArrays<dim> &p = body.particles();
+    ParticleArrays<dim> &p = body.particles();
     for (; first < movers.size(); ++first) {
       const int i = movers[first];
       const Located at = walk(mesh, p.cell[i], p.position[i]);
-      p.cell[i] = at.outside ? no_cell : ~at.cell;
+      p.cell[i] = at.left_by >= 0 ? outside_from + at.cell * (dim + 1) + at.left_by : ~at.cell;
       if (at.partition_face >= 0) {
         const PartitionFace &face = mesh.partition_faces[at.partition_face];
         p.cell[i] = face.cell;  // the walk goes on there
@@ -88,7 +89,7 @@ PetscErrorCode relocate(Body<dim> &body, const BackgroundMesh<dim> &mesh, std::v
     migrated = true, first = movers.size();
     for (int i = arrival; i < body.particles().count; ++i) movers.push_back(i);
   }
-  const ParticleArrays<dim> &p = body.particles();
+  ParticleArrays<dim> &p = body.particles();
   if (migrated) {  // particles have changed places
     movers.clear();
     for (int i = 0; i < p.count; ++i)
@@ -97,8 +98,8 @@ PetscErrorCode relocate(Body<dim> &body, const BackgroundMesh<dim> &mesh, std::v
   outside.clear();
   size_t inside = 0;
   for (const int i : movers)
-    if (p.cell[i] == no_cell)
-      outside.push_back(i);
+    if (const PetscInt face = p.cell[i] - outside_from; p.cell[i] < outside_from / 2)
+      outside.push_back({i, static_cast<int>(face / (dim + 1)), static_cast<int>(face % (dim + 1))});
     else
       p.cell[i] = ~p.cell[i], movers[inside++] = i;
   movers.resize(inside);
@@ -110,7 +111,7 @@ PetscErrorCode relocate(Body<dim> &body, const BackgroundMesh<dim> &mesh, std::v
   template void to_next_nodes<dim, averaged, fluids>(Body<dim> &, const Lagrangian<dim> &, FilledGrid<dim> &,  \
                                                      Vec<dim> *, PointSet &, const Pores<dim> &, std::vector<int> &);
 TALUS_EACH_TRANSFER(TALUS_TO_PARTICLES)
-template PetscErrorCode relocate<2>(Body<2> &, const BackgroundMesh<2> &, std::vector<int> &, std::vector<int> &);
-template PetscErrorCode relocate<3>(Body<3> &, const BackgroundMesh<3> &, std::vector<int> &, std::vector<int> &);
+template PetscErrorCode relocate(Body<2> &, const BackgroundMesh<2> &, std::vector<int> &, std::vector<LeftMesh> &);
+template PetscErrorCode relocate(Body<3> &, const BackgroundMesh<3> &, std::vector<int> &, std::vector<LeftMesh> &);
 
 }  // namespace talus

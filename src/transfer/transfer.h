@@ -44,8 +44,8 @@ struct Pores {
   double over_density = 0;  ///< 1 / density of the grains [m3/kg]
 };
 
-/// Adds the particles of one body to the grid: mass matrices, momentum, volumes, the `fluids` in its pores and, with
-/// averaged stress, the stress points; those listed in `only`, or all. `momentum` [compact nodes][dim] has room for
+/// Adds the particles of one body to the grid: mass matrices, momentum, volumes, the `fluids` in its pores and the
+/// stress points; those listed in `only`, or all. `momentum` [compact nodes][dim] has room for
 /// every node of the local mesh.
 template <int dim, bool averaged, int fluids>
 void to_nodes(const Body<dim> &body, FilledGrid<dim> &grid, Vec<dim> *momentum, PointSet &points,
@@ -80,11 +80,16 @@ template <int dim, bool averaged, int fluids>
 void to_next_nodes(Body<dim> &body, const Lagrangian<dim> &from, FilledGrid<dim> &grid, Vec<dim> *momentum,
                    PointSet &points, const Pores<dim> &pores, std::vector<int> &movers);
 
+/// A particle that left the mesh by a face of a cell. It lies at this face, and has no cell any more.
+struct LeftMesh {
+  int particle, cell, face;
+};
+
 /// Walks the listed particles of a body to their new cells and sends those that leave the rank; collective. Afterwards
 /// `movers` lists the walkers that are on this rank and have a cell, and `outside` those that left the mesh, both
-/// ascending. A particle outside lies at the boundary of the mesh where it left, and has no cell.
+/// ascending.
 template <int dim>
 PetscErrorCode relocate(Body<dim> &body, const BackgroundMesh<dim> &mesh, std::vector<int> &movers,
-                        std::vector<int> &outside);
+                        std::vector<LeftMesh> &outside);
 
 }  // namespace talus

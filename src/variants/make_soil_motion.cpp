@@ -1,5 +1,6 @@
 #include "physics/phase_models.h"
 #include "physics/soil_motion.h"
+#include "scene/scene.h"
 
 namespace talus {
 

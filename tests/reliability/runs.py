@@ -81,8 +81,8 @@ MODELS = {  # overrides of the scene
     "saturated": [*SHORT, "phases=saturated", "water.bulk_modulus=1e7"],
     "unsaturated": ["phases=unsaturated", *PORES, *RAIN],
     "three-phase": ["phases=three-phase", *PORES],
-    "seepage": ["phases=drained", "water.table=[[0, 0.3], [2, 0.1]]", "stage.0.kind=seepage", "stage.0.steady=true", "stage.0.damping=0",
-                "stage.0.reset_displacement=false", "boundary.base={kind='fixed'}",
+    "seepage": ["phases=drained", "water.table=[[0, 0.3], [2, 0.1]]", "stage.0={name='settle', kind='seepage', steady=true, duration=0.03}",
+                "boundary.base={kind='fixed'}",
                 "boundary.pond={kind='head', group='left', level=0.4}"],
 }
 INTEGRATORS = {"euler": [], "arkode": ["integrator.kind=arkode"]}

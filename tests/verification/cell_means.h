@@ -2,7 +2,7 @@
 /// Fields that are constant in a cell, to be compared with a profile at its centre.
 #include <map>
 
-#include "commands/rung.h"
+#include "tests/verify/rung.h"
 
 namespace talus::rungs {
 

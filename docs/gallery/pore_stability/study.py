@@ -298,7 +298,7 @@ def strip_reference(talus, folder):
     """Settlement under the load [m] and pressure as a function of place [Pa], by quadratic finite elements of 1/64 m."""
     from scipy.interpolate import NearestNDInterpolator
 
-    results = run(talus, STRIP, ["mesh.size=0.015625", "stage.0.kind=consolidation", "stage.0.damping=0"], folder)
+    results = run(talus, STRIP, ["mesh.size=0.015625", "stage.0={name='loading', kind='consolidation', duration=0.16}"], folder)
     last = results.snapshots[-1]
     return results.history.columns["load_displacement_y_m"][-1], NearestNDInterpolator(last.position()[:, :2], last.column("pore_pressure").values[:, 0])
 

@@ -1,8 +1,9 @@
 #pragma once
 #include <cmath>
 
+#include "base/units.h"
 #include "physics/pores/permeability/wetness.h"
-#include "scene/scene.h"
+#include "scene/required.h"
 
 namespace talus {
 

@@ -1,8 +1,8 @@
 #pragma once
 #include <cmath>
 
+#include "base/units.h"
 #include "physics/pores/permeability/wetness.h"
-#include "scene/scene.h"
 
 namespace talus {
 

@@ -3,12 +3,13 @@
 #include <cmath>
 
 #include "physics/pores/pore_fluid.h"
+#include "scene/scene.h"
 
 namespace talus {
 
 template <int dim, class Phases>
 Pores<dim> PoreFluid<dim, Phases>::pores_of(std::vector<PorePoints> &points, int b) {
-  Pores<dim> pores{points[b].grains.data(), {}, {}, 1 / bodies_[b]->source().grain_density};
+  Pores<dim> pores{points[b].grains.data(), {}, {}, 1 / bodies_[b]->grain_density()};
   for (int a = 0; a < fluids; ++a) pores.mass[a] = points[b].mass[a].data(), pores.impulse[a] = impulse_[a].data();
   return pores;
 }
@@ -51,7 +52,7 @@ PetscErrorCode PoreFluid<dim, Phases>::gather(const Frame &frame, PoreConditions
     PorePoints &points = points_[b];
     points.count = set.count;
     if (!frame.averaged) {  // particles are the points
-      const double over_density = 1 / bodies_[b]->source().grain_density;
+      const double over_density = 1 / bodies_[b]->grain_density();
       points.reserve(set.count);
       for (int i = 0; i < p.count; ++i) {
         points.grains[i] = p.mass[i] * over_density;

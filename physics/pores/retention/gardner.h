@@ -1,9 +1,10 @@
 #pragma once
 #include <cmath>
 
+#include "base/units.h"
 #include "physics/pores/permeability/wetness.h"
 #include "physics/pores/retention/residual.h"
-#include "scene/scene.h"
+#include "scene/required.h"
 
 namespace talus {
 

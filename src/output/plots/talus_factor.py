@@ -1,13 +1,12 @@
 """Pictures of a factor of safety: the mechanism with its slip surface, and displacement against the factor."""
 
-import json
-
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.patheffects import Normal, Stroke
 from matplotlib.tri import Triangulation
 
 import talus_style as style
+from talus_results import read_factor
 
 BRIGHT = 0.97  # share of the soil that shears less than the end of the colour scale
 ARROWS = 22  # squares over the longer side of the soil, with an arrow each
@@ -17,12 +16,6 @@ FLOWS = (("own", style.LINES[0], "psi < phi"), ("associated", style.LINES[1], "p
 WATER = {True: "no flow during failure (undrained)", False: "with the pore pressure of the stage held"}
 MOVES = 0.1  # of the largest displacement: less has no arrow
 WIDTH, BESIDE, AROUND = 9.0, 1.9, 1.5  # of the picture, left and right of the soil, above and below it [inch]
-
-
-def read_factor(results):
-    """factor_of_safety.json of the run; None where none was asked for."""
-    path = results.folder / "factor_of_safety.json"
-    return json.loads(path.read_text()) if path.exists() else None
 
 
 def short(bracket):

@@ -6,8 +6,7 @@ in SI units. A page may have measures of its own in a file measures.py beside it
 
 import numpy as np
 
-from talus_factor import read_factor
-from talus_results import Thickness, largest_displacement, sliding, spacing
+from talus_results import Thickness, largest_displacement, read_factor, sliding, spacing
 
 MEASURES = {}
 

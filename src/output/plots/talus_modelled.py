@@ -156,19 +156,20 @@ def stage_rows(model):
     """What a table of the stages says: the names of its columns, then a row for each stage."""
     rows = [("stage", "kind", "at most", "ends with", "what acts")]
     for number, stage in enumerate(model.stages):
-        kind = words(stage["kind"]) + (f", {stage['integrator']}" if stage["kind"] == "dynamic" else ", steady" if stage["steady"] else "")
+        kind = words(stage["kind"]) + (f", {stage['integrator']}" if stage["kind"] == "dynamic" else ", steady" if stage.get("steady") else "")
         rows.append((stage["name"], kind, duration(stage["duration"]), ending(stage), "; ".join(actions(model, number))))
     return rows
 
 
 def ending(stage):
-    if stage["when_lost"] == "next_stage":
+    until = stage.get("until", "duration")
+    if stage.get("when_lost") == "next_stage":
         return "duration, or loss of equilibrium"
-    if stage["until"] == "failure":
+    if until == "failure":
         return f"failure of {stage['failure_point']}, from {quantity(stage['failure_speed'], 'm/s')}"
-    if stage["until"] == "rest":
+    if until == "rest":
         return f"rest, below {quantity(stage['rest_speed'], 'm/s')}"
-    return stage["until"]
+    return until
 
 
 def actions(model, number):
@@ -176,32 +177,32 @@ def actions(model, number):
     said, stage = [], model.stages[number]
     size = float(np.linalg.norm(model.data["gravity"]))
     if size:
-        said.append(f"gravity {quantity(size, 'm/s2')}" + (f", growing from 0 in {duration(stage['gravity_ramp'])}" if stage["gravity_ramp"] else ""))
-    if stage["seismic_coefficient"]:
+        said.append(f"gravity {quantity(size, 'm/s2')}" + (f", growing from 0 in {duration(stage['gravity_ramp'])}" if stage.get("gravity_ramp") else ""))
+    if stage.get("seismic_coefficient"):
         said.append(f"pseudo-static inertia of ({', '.join(f'{k:g}' for k in stage['seismic_coefficient'])}) times the weight")
     phases = model.data["phases"]
     if phases == "drained":
         seeped = any(before["kind"] in SEEPING for before in model.stages[:number])
         said.append(SEEPING.get(stage["kind"], "pore pressure of the seepage before" if seeped else "prescribed pore pressure"))
     elif phases != "dry":
-        said.append("pore fluids move" if stage["pore_flow"] else "pore pressure of the start")
+        said.append("pore fluids move" if stage.get("pore_flow", True) else "pore pressure of the start")
     standing = [one.name for one in model.boundaries if one.soil in ("load", "velocity")]
     if standing:
         said.append("on the soil: " + ", ".join(standing))
     if stage["changes"]:
         said.append("changing with time: " + ", ".join(words(one.replace(".", " ")) for one in stage["changes"]))
-    elif stage["hold_loads"]:
+    elif stage.get("hold_loads"):
         said.append("functions of time stand still")
-    if stage["initial_stress"] == "k0":
+    if stage.get("initial_stress") == "k0":
         said.append("stress at the start by k0")
     for key, verb in (("add", "adds"), ("remove", "removes")):
-        if stage[key]:
+        if stage.get(key):
             said.append(f"{verb} {', '.join(stage[key])}")
     if stage["kind"] == "dynamic":
         said.append(f"damping {stage['damping']:g}" if stage["damping"] else "no damping")
-    if not stage["softening"]:
+    if not stage.get("softening", True):
         said.append("soil keeps its strength")
-    if stage["reset_displacement"]:
+    if stage.get("reset_displacement"):
         said.append("displacement set to 0 at its end")
     return said
 

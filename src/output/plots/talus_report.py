@@ -6,14 +6,14 @@ import pathlib
 
 import numpy as np
 
-from talus_factor import about_water, factor_lines, lost_stages, read_factor, short
+from talus_factor import about_water, factor_lines, lost_stages, short
 from talus_histories import base_friction
 from talus_measures import flow, known
 from talus_model import draw_model
 from talus_modelled import read_model, stage_rows
 from talus_moments import moved_before
 from talus_outcomes import in_words, outcome
-from talus_results import NOT_ENDED, SLOW, largest_displacement, sliding, still_moving
+from talus_results import NOT_ENDED, SLOW, largest_displacement, read_factor, sliding, still_moving
 from talus_units import Keys, at_time, capital, readable_unit, text_of, words
 
 LOG_LINES = 25

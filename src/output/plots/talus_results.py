@@ -334,6 +334,12 @@ class History:
         return [(self.time[max(0, k - 1)], name) for k, name in enumerate(self.stage) if k == 0 or name != self.stage[k - 1]]
 
 
+def read_factor(results):
+    """factor_of_safety.json of the run; None where none was asked for."""
+    path = results.folder / "factor_of_safety.json"
+    return json.loads(path.read_text()) if path.exists() else None
+
+
 def together(values):
     """The names [[name, ...], ...] of a dictionary, those with the same values together, in its order: points that are the same particle."""
     groups = {}

@@ -11,7 +11,7 @@ from matplotlib.transforms import offset_copy
 
 import talus_style as style
 from talus_colours import Colours
-from talus_factor import read_factor, short
+from talus_factor import short
 from talus_ground import Ground
 from talus_interrupt import end_with_parent
 from talus_modelled import read_model
@@ -19,7 +19,7 @@ from talus_moments import chosen_snapshots, origins, scaled_by, since_reset, tel
 from talus_outcomes import cell_size
 from talus_perspective import edges
 from talus_relief import EARTH, SOIL, between, seen, seen_from_above, without_flats
-from talus_results import MECHANISM, together
+from talus_results import MECHANISM, read_factor, together
 from talus_soils import middles, moved_away, painted, tints
 from talus_symbols import AROUND as SIDES, WHITE, keep_apart, movable
 from talus_tiles import GAP, GAP_IN_SPACE, Frame, outline_of_cells, outline_of_points

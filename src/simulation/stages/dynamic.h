@@ -5,6 +5,9 @@
 #include <limits>
 #include <sstream>
 
+#include "scene/output_source.h"
+#include "scene/scene.h"
+#include "scene/stage.h"
 #include "simulation/stages/stage_runner.h"
 #include "simulation/still_moving.h"
 
@@ -13,7 +16,7 @@ namespace talus {
 template <int dim>
 class DynamicStage final : public StageRunner<dim> {
  public:
-  explicit DynamicStage(Run<dim> &run) : run_(run), stage_(run.stage()) {}
+  DynamicStage(Run<dim> &run, const DynamicKeys &keys) : run_(run), stage_(run.stage()), keys_(keys) {}
 
   void run() override {
     begin();
@@ -47,7 +50,7 @@ class DynamicStage final : public StageRunner<dim> {
       run_.dynamics.watch = [&points = run_.points, point](Vec<3> *v) { return points.velocity(point, v); };
     double longest = 0;
     for (const Stage &s : run_.scene.stage) longest = std::max(longest, s.duration);
-    const Output &output = run_.scene.output;
+    const Output &output = *run_.scene.output;
     history_interval_ = output.history_interval > 0 ? output.history_interval : longest / 200;
     checkpoint_interval_ = output.checkpoint_interval > 0 ? output.checkpoint_interval : output.interval;
     set_loading();
@@ -62,7 +65,7 @@ class DynamicStage final : public StageRunner<dim> {
   void advance() {
     const double begin = run_.progress.begin, &now = run_.clock.time;
     const double row = next_time(begin, history_interval_, now),
-                 snapshot = next_time(begin, run_.scene.output.interval, now),
+                 snapshot = next_time(begin, run_.scene.output->interval, now),
                  checkpoint = next_time(begin, checkpoint_interval_, now);
     set_loading();
     const Verdict verdict = run_.dynamics.cycle(run_.dynamics.fixed_step() ? end() : std::min(end(), snapshot));
@@ -89,7 +92,7 @@ class DynamicStage final : public StageRunner<dim> {
   }
 
   void finish() {
-    if (!run_.progress.met && !run_.progress.told && run_.stop->early() && !run_.is_past_stage()) note_unmet();
+    if (!run_.progress.met && !run_.progress.told && keys_.stop().early && !run_.is_past_stage()) note_unmet();
     run_.progress.told = true;
     run_.recorder.write_history();
     run_.recorder.write_snapshot();
@@ -113,12 +116,12 @@ class DynamicStage final : public StageRunner<dim> {
     text << "the slide has not come to rest at t = " << run_.clock.time << " s: " << left->sentence() << "; ";
     if (!run_.progress.met)
       text << "a longer duration of the stage " << stage_.name;
-    else if (stage_.until == StopWhen::rest)  // of all soil, most of which may stand
+    else if (keys_.stop().by_mean_speed)  // of all soil, most of which may stand
       text << "the rms speed of all soil is below rest_speed, and a smaller rest_speed of the stage " << stage_.name;
     else
       text << "a further stage";
     text << " would show where it stops";
-    if (run_.recorder.writes() && (!run_.progress.met || stage_.until == StopWhen::rest))
+    if (run_.recorder.writes() && (!run_.progress.met || keys_.stop().by_mean_speed))
       text << " (--resume goes on with it)";
     run_.motion_left = text.str();
   }
@@ -131,18 +134,14 @@ class DynamicStage final : public StageRunner<dim> {
     text << "stage " << stage_.name << " reached its duration of " << stage_.duration
          << " s before its stop criterion was met: unbalanced force ratio " << sums.ratio()
          << ", kinetic over strain energy " << (sums.kinetic > 0 ? sums.kinetic / sums.strain : 0) << ", rms speed "
-         << speed << " m/s";
-    if (stage_.until == StopWhen::rest && speed < stage_.rest_speed) {
-      const std::string why = run_.stop->waits_for();
-      text << ", which is below rest_speed"
-           << (why.empty() ? " but has not stayed there without rising" : " but is no rest: " + why);
-    }
+         << speed << " m/s" << run_.stop->unmet(speed);
     run_.recorder.note(text.str(), event::duration_over,
                        {{"unbalanced_force_ratio", sums.ratio()}, {"rms_speed_m_s", speed}});
   }
 
   Run<dim> &run_;
   const Stage &stage_;
+  const DynamicKeys &keys_;
   double history_interval_ = 0, checkpoint_interval_ = 0;  ///< [s]
 };
 

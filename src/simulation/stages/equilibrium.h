@@ -1,5 +1,9 @@
 #pragma once
 /// Quasi-static equilibrium along a path of loads.
+#include "scene/quasi_static_source.h"
+#include "scene/scene.h"
+#include "scene/stage.h"
+#include "scene/start_from.h"
 #include "simulation/stages/static_stage.h"
 
 namespace talus {
@@ -20,12 +24,12 @@ class EquilibriumStage final : public StaticStage<dim> {
     };
     // a trial of the factor finds it sooner than small steps do; friction of a base has no bound by psi = phi
     std::function<PetscErrorCode(StepOutcome *)> failure;
-    if (this->run_.statics.for_factor && !on_base())
+    if (this->run_.leads_to_factor() && !on_base())
       failure = [&](StepOutcome *outcome) {
         return find_failure(problem, this->run_.world.laws, this->load_at(1), this->run_.clock.time, outcome);
       };
     require(follow_path(
-        1. / stage.load_steps, this->run_.scene.quasi_static.smallest_step, advance, failure,
+        1. / this->keys_.load_steps, this->run_.scene.quasi_static->smallest_step, advance, failure,
         [&](double share, const StepOutcome &) { this->done(share); }, &path.share, &path.last, &path.iterations));
     if (path.share < 1 && may_settle(path)) settle(path);
   }
@@ -36,9 +40,9 @@ class EquilibriumStage final : public StaticStage<dim> {
   /// In the first stage the share of gravity that was reached says nothing of the soil, and so long as no strength is
   /// lost, another way to the state under all of it will do. Later stages end where their loads find no equilibrium.
   bool may_settle(const Path &path) const {
-    const bool may_go_on = this->stage_.when_lost != WhenLost::stop && !this->run_.statics.for_factor;
+    const bool may_go_on = this->keys_.when_lost != WhenLost::stop && !this->run_.leads_to_factor();
     const bool loses_strength = this->stage_.softening && std::ranges::any_of(this->run_.world.laws, softens);
-    return this->run_.progress.number == 0 && this->run_.scene.start_from.folder.empty() && !may_go_on &&
+    return this->run_.progress.number == 0 && this->run_.scene.start_from->folder.empty() && !may_go_on &&
            !loses_strength && !path.last.stopped && !path.last.fails && !on_base() &&
            !this->run_.statics.problem().supports().moves();
   }
@@ -58,7 +62,7 @@ class EquilibriumStage final : public StaticStage<dim> {
                    ? ", in soil that moved with psi = phi: it bears this stress with its own psi too, but lateral "
                      "stress and displacements are those of soil that dilates"
                    : ": displacements depend on this way more than stresses do")
-           << ". Other load_steps (here " << this->stage_.load_steps
+           << ". Other load_steps (here " << this->keys_.load_steps
            << ") may do without, and so may initial_stress = \"k0\"";
   }
   double left_at_ = -1;  ///< share of the loads where Newton's iterations ended before; -1: they did not

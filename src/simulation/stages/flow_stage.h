@@ -1,5 +1,8 @@
 #pragma once
 /// What stages in which pore water flows have in common, docs/theory/seepage.md.
+#include "scene/quasi_static_source.h"
+#include "scene/scene.h"
+#include "scene/stage.h"
 #include "simulation/changing_loads.h"
 #include "simulation/stages/static_stage.h"
 #include "solvers/quasi_static/flow_path.h"
@@ -14,13 +17,14 @@ class FlowStage : public StaticStage<dim> {
 
  protected:
   using typename StaticStage<dim>::Path;
-  bool water_flows() const final { return true; }
+  /// Is the flow that of the loads at the end, which lasts?
+  virtual bool steady() const { return false; }
   void follow(Path &path) final {
     const Stage &stage = this->stage_;
     Statics<dim> &statics = this->run_.statics;
     FlowPath flow{stage.duration,
-                  stage.steady,
-                  stage.load_steps,
+                  steady(),
+                  this->keys_.load_steps,
                   stage.softening,
                   [this](double share) { return this->load_at(share); },
                   [this](double share) { this->done(share); },
@@ -34,7 +38,7 @@ class FlowStage : public StaticStage<dim> {
     const FluidBooks &books = this->run_.recorder.fluids();
     const double seeped = books.seeped(), handed = books.handed(0);
     require(follow_flow(this->run_.world.comm, this->soil_moves() ? &statics.problem() : nullptr, statics.flow(),
-                        this->run_.scene.quasi_static, flow, &path.share, &path.last, &path.iterations));
+                        *this->run_.scene.quasi_static, flow, &path.share, &path.last, &path.iterations));
     entered_ = books.seeped() - seeped, handed_ = books.handed(0) - handed;
     if (this->run_.world.phases.liquid) water_ = this->run_.fluids()[0].stored;
   }
@@ -54,7 +58,7 @@ class FlowStage : public StaticStage<dim> {
   /// Shares of the stage at which what acts changes.
   std::vector<double> events() const {
     const Stage &stage = this->stage_;
-    if (stage.hold_loads || stage.steady) return {};
+    if (stage.hold_loads || steady()) return {};
     const auto &[low, high] = this->run_.world.mesh_box;
     const double begin = this->load_at(0), end = this->load_at(1);
     std::vector<double> shares = load_events(this->run_.scene, low, high, begin, end);

@@ -1,24 +1,31 @@
-/// The list of the kinds of stages: one line to add one.
+/// The list of the kinds of stages: one line to add one, as in scene/stage.h.
+#include "scene/stage.h"
 #include "simulation/stages/consolidation.h"
 #include "simulation/stages/dynamic.h"
 #include "simulation/stages/equilibrium.h"
+#include "simulation/stages/factor_of_safety.h"
 #include "simulation/stages/seepage.h"
 
 namespace talus {
 
 template <int dim>
+DynamicStage<dim> runner_of(const DynamicKeys &);
+template <int dim>
+EquilibriumStage<dim> runner_of(const QuasiStaticKeys &);
+template <int dim>
+SeepageStage<dim> runner_of(const SeepageKeys &);
+template <int dim>
+ConsolidationStage<dim> runner_of(const ConsolidationKeys &);
+template <int dim>
+FactorStage<dim> runner_of(const FactorKeys &);
+
+template <int dim>
 std::unique_ptr<StageRunner<dim>> make_stage_runner(Run<dim> &run) {
-  switch (run.stage().kind) {
-    case StageKind::dynamic:
-      return std::make_unique<DynamicStage<dim>>(run);
-    case StageKind::quasi_static:
-      return std::make_unique<EquilibriumStage<dim>>(run);
-    case StageKind::seepage:
-      return std::make_unique<SeepageStage<dim>>(run);
-    case StageKind::consolidation:
-      return std::make_unique<ConsolidationStage<dim>>(run);
-  }
-  throw std::logic_error("kind of stage without a class");
+  return std::visit(
+      [&](const auto &keys) -> std::unique_ptr<StageRunner<dim>> {
+        return std::make_unique<decltype(runner_of<dim>(keys))>(run, keys);
+      },
+      run.stage().kind);
 }
 
 template std::unique_ptr<StageRunner<2>> make_stage_runner(Run<2> &);

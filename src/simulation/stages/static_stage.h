@@ -7,7 +7,10 @@
 #include <sstream>
 
 #include "base/rounded.h"
+#include "scene/output_source.h"
 #include "scene/reader.h"
+#include "scene/scene.h"
+#include "scene/stage.h"
 #include "simulation/changing_loads.h"
 #include "simulation/softening.h"
 #include "simulation/stages/stage_runner.h"
@@ -17,7 +20,7 @@ namespace talus {
 template <int dim>
 class StaticStage : public StageRunner<dim> {
  public:
-  explicit StaticStage(Run<dim> &run) : run_(run), stage_(run.stage()) {}
+  StaticStage(Run<dim> &run, const StaticKeys &keys) : run_(run), stage_(run.stage()), keys_(keys) {}
 
   void run() final {
     if (!run_.progress.met) {  // a resumed run has it behind it
@@ -36,9 +39,8 @@ class StaticStage : public StageRunner<dim> {
     int iterations = 0;
   };
   /// Do supports have to hold the soil?
-  virtual bool soil_moves() const { return true; }
-  /// Does the flow set the pressure in drained soil?
-  virtual bool water_flows() const { return false; }
+  bool soil_moves() const { return stage_.soil_moves(); }
+  bool water_flows() const { return stage_.water_flows(); }
   /// Solves for one state after another and calls `done` after each.
   virtual void follow(Path &path) = 0;
   /// Says what the end of the path is.
@@ -54,7 +56,7 @@ class StaticStage : public StageRunner<dim> {
     run_.hand_to_particles();
     run_.recorder.progress();
     run_.recorder.write_history();
-    const double interval = run_.scene.output.interval, elapsed = share * stage_.duration;
+    const double interval = run_.scene.output->interval, elapsed = share * stage_.duration;
     if (interval > 0 && share < 1 && elapsed >= snapshots_ * interval * (1 - 1e-9))
       run_.recorder.write_snapshot(), snapshots_ = std::floor(elapsed / interval * (1 + 1e-9)) + 1;
     int stop = interrupted;
@@ -81,6 +83,7 @@ class StaticStage : public StageRunner<dim> {
 
   Run<dim> &run_;
   const Stage &stage_;
+  const StaticKeys &keys_;
 
  private:
   /// Do loads come as functions of time or at once, so that a share of the path is none of them?
@@ -90,6 +93,7 @@ class StaticStage : public StageRunner<dim> {
              return std::ranges::any_of(load.when, [&](const TimeSpan &s) { return s.begin < end && s.end > begin; });
            });
   }
+  /// Does the flow set the pressure in drained soil?
   bool sets_pressure() const { return run_.world.phases.prescribed && water_flows(); }
 
   void begin() {
@@ -206,15 +210,15 @@ class StaticStage : public StageRunner<dim> {
                 "iterations from an equilibrium of the rest. Motion shows which: a dynamic stage with damping, from "
                 "the start or (when_lost = \"next_stage\") from here";
       else if (soil_moves() && !path_.last.fails && !path_.last.dry && !path_.last.shut)
-        text << "; the slope may be too weak to stand, or other load_steps (here " << stage_.load_steps
+        text << "; the slope may be too weak to stand, or other load_steps (here " << keys_.load_steps
              << ") may help, or, where the stage is the first, initial_stress = \"k0\"";
-      const bool goes_on = run_.statics.for_factor && !water_flows();
+      const bool goes_on = run_.leads_to_factor() && !water_flows();
       if (goes_on && stage_.softening && std::ranges::any_of(run_.world.laws, softens))
         fail(text.str() +
              "; there is no factor of safety, since the strength that is left depends on how far the "
              "loads came, and this on the steps: other load_steps may find the equilibrium; with "
              "softening = false soil keeps the strength that it has at the beginning of the stage");
-      if (stage_.when_lost == WhenLost::stop && !goes_on) fail(text.str());
+      if (keys_.when_lost == WhenLost::stop && !goes_on) fail(text.str());
       if (!goes_on && !stage_.hold_loads && stage_.duration > 0)
         text << "; the next stage begins with the loads of t = " << run_.clock.load_time << " s";
       if (goes_on) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "scene/stage.h"
 #include "simulation/run.h"
 
 namespace talus {
@@ -14,30 +15,26 @@ namespace talus {
 template <int dim>
 class StopAtFailure final : public StopCriterion<dim> {
  public:
-  explicit StopAtFailure(const Stage &stage) : stage_(stage) {}
+  StopAtFailure(const Stage &, const AtFailure &keys) : keys_(keys) {}
 
-  std::string watched_point() const override { return stage_.failure_point; }
+  std::string watched_point() const override { return keys_.failure_point; }
 
   bool met(Run<dim> &run, const Verdict &verdict) override {
     Tenth &present = seen_.tenth[seen_.ended % tenths];
     const double step = run.clock.last_step;
     for (int d = 0; d < 3; ++d) present.path[d] += verdict.watched_velocity[d] * step;
     present.elapsed += step;
-    if (present.elapsed < stage_.failure_time / tenths * (1 - 1e-9)) return false;
+    if (present.elapsed < keys_.failure_time / tenths * (1 - 1e-9)) return false;
     const bool over = ++seen_.ended >= tenths && watch(run);
     seen_.tenth[seen_.ended % tenths] = {};
     if (!over) return false;
     std::ostringstream text;
     text.precision(8);
     text << "failure at " << seen_.time << " s (loads at t = " << seen_.load_time << " s): point "
-         << stage_.failure_point << " passed " << stage_.failure_speed
+         << keys_.failure_point << " passed " << keys_.failure_speed
          << " m/s, and from then on the soil stored less than a third of the energy that it received";
-    run.recorder.tell({event::failure,
-                       text.str(),
-                       {{"failure_speed_m_s", stage_.failure_speed}},
-                       false,
-                       seen_.time,
-                       seen_.load_time});
+    run.recorder.tell(
+        {event::failure, text.str(), {{"failure_speed_m_s", keys_.failure_speed}}, false, seen_.time, seen_.load_time});
     return true;
   }
   void serialize(Archive &archive) override { archive.serialize("failure", seen_); }
@@ -56,7 +53,7 @@ class StopAtFailure final : public StopCriterion<dim> {
       elapsed += one.elapsed;
     }
     const double speed = std::hypot(path[0], path[1], path[2]) / elapsed, middle = run.clock.time - elapsed / 2;
-    const double last_speed = seen_.speed, last_middle = seen_.middle, limit = stage_.failure_speed;
+    const double last_speed = seen_.speed, last_middle = seen_.middle, limit = keys_.failure_speed;
     seen_.speed = speed, seen_.middle = middle;
     if (!(speed > limit)) {
       seen_.fast = 0;
@@ -92,7 +89,7 @@ class StopAtFailure final : public StopCriterion<dim> {
     double change = 0;                  ///< largest change of the stored energy since then [J]
     double excess = 0;                  ///< largest of twice the stored energy less what is not stored [J]
   };
-  const Stage &stage_;
+  const AtFailure &keys_;
   Seen seen_;
 };
 

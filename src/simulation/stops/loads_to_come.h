@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "scene/stage.h"
 #include "simulation/changing_loads.h"
 #include "simulation/run.h"
 
@@ -19,7 +20,8 @@ class LoadsToCome {
   std::string operator()(const Run<dim> &run) {
     const Stage &stage = run.stage();
     const double since_begin = run.clock.time - run.progress.begin;
-    if (since_begin < stage.gravity_ramp) return "gravity still increases";
+    if (since_begin < stage.gravity_ramp()) return "gravity still increases";
+    if (stage.shakes() && since_begin < run.world.shaking.duration()) return "the ground still shakes";
     if (stage.hold_loads) return "";
     if (!known_) loads_ = changing_loads(run.scene), known_ = true;
     const double now = run.clock.load_time, end = now + stage.duration - since_begin;

@@ -1,6 +1,5 @@
-/// The list of stop criteria: one line to add one.
-#include <stdexcept>
-
+/// The list of stop criteria: one line to add one, as in scene/stops/stops.h.
+#include "scene/stage.h"
 #include "simulation/stops/duration.h"
 #include "simulation/stops/equilibrium.h"
 #include "simulation/stops/failure.h"
@@ -9,18 +8,22 @@
 namespace talus {
 
 template <int dim>
+StopAtDuration<dim> criterion_of(const AtDuration &);
+template <int dim>
+StopAtEquilibrium<dim> criterion_of(const AtEquilibrium &);
+template <int dim>
+StopAtRest<dim> criterion_of(const AtRest &);
+template <int dim>
+StopAtFailure<dim> criterion_of(const AtFailure &);
+
+template <int dim>
 std::unique_ptr<StopCriterion<dim>> make_stop_criterion(const Stage &stage) {
-  switch (stage.until) {
-    case StopWhen::duration:
-      return std::make_unique<StopAtDuration<dim>>();
-    case StopWhen::equilibrium:
-      return std::make_unique<StopAtEquilibrium<dim>>(stage);
-    case StopWhen::rest:
-      return std::make_unique<StopAtRest<dim>>(stage);
-    case StopWhen::failure:
-      return std::make_unique<StopAtFailure<dim>>(stage);
-  }
-  throw std::logic_error("stop criterion without a class");
+  if (!stage.motion()) return nullptr;
+  return std::visit(
+      [&](const auto &keys) -> std::unique_ptr<StopCriterion<dim>> {
+        return std::make_unique<decltype(criterion_of<dim>(keys))>(stage, keys);
+      },
+      stage.motion()->until);
 }
 
 template std::unique_ptr<StopCriterion<2>> make_stop_criterion<2>(const Stage &);

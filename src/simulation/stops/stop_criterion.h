@@ -3,10 +3,10 @@
 #include <memory>
 
 #include "base/archive.h"
-#include "scene/scene.h"
 
 namespace talus {
 
+struct Stage;
 template <int dim>
 struct Run;
 struct Verdict;
@@ -19,15 +19,14 @@ class StopCriterion {
   virtual bool met(Run<dim> &run, const Verdict &verdict) = 0;
   /// Name of the output point whose speed it needs after each step; empty: none.
   virtual std::string watched_point() const { return ""; }
-  /// What it waits for though the soil is as it asks; empty: nothing.
-  virtual std::string waits_for() const { return ""; }
-  /// May it end the stage before its duration?
-  virtual bool early() const { return true; }
+  /// Why it did not end the stage, as a clause about the root mean square speed of all soil at its end [m/s]; empty:
+  /// the numbers say it.
+  virtual std::string unmet(double /*speed*/) const { return ""; }
   /// What it has seen of the stage.
   virtual void serialize(Archive &) {}
 };
 
-/// The criterion that a stage asks for by its key `until`.
+/// The criterion that a stage asks for by its key `until`; null if its kind has none.
 template <int dim>
 std::unique_ptr<StopCriterion<dim>> make_stop_criterion(const Stage &stage);
 

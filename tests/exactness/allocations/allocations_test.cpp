@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "scene/reader.h"
+#include "scene/scene.h"
 #include "simulation.h"
 
 namespace {

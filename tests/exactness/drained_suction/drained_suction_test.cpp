@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "scene/reader.h"
+#include "scene/scene.h"
 #include "simulation.h"
 
 namespace talus {

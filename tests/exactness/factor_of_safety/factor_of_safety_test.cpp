@@ -8,7 +8,9 @@
 #include <map>
 #include <utility>
 
+#include "base/temporary_folder.h"
 #include "scene/reader.h"
+#include "scene/scene.h"
 #include "simulation.h"
 #include "solvers/quasi_static/bracket.h"
 #include "solvers/quasi_static/trial_strength.h"
@@ -21,6 +23,7 @@ constexpr double same = 0.005;
 
 FactorOfSafety search(const std::string &file, const Overrides &overrides) {
   Scene scene = read_scene(file[0] == '/' ? file : std::string(TALUS_SLOPES) + "/" + file, overrides);
+  scene.add_factor_stage();
   RunOptions options;
   options.pictures = options.screen = false;
   return make_simulation(PETSC_COMM_WORLD, scene, options)->factor_of_safety();
@@ -83,6 +86,7 @@ TEST(FactorOfSafety, leaves_named_points_with_a_stress_that_the_soil_bears) {
       read_scene(std::string(TALUS_SLOPES) + "/scene.toml",
                  coarse + Overrides{"output.point={toe={position=[48.768, 0]}, crest={position=[18.288, 15.24]}, "
                                     "face={position=[33.528, 7.62]}, corner={position=[0, 0]}}"});
+  scene.add_factor_stage();
   RunOptions options;
   options.pictures = options.screen = false;
   const auto simulation = make_simulation(PETSC_COMM_WORLD, scene, options);
@@ -103,7 +107,8 @@ TEST(FactorOfSafety, says_where_the_mechanism_ends_with_the_mesh_and_traces_it_s
   const auto told = [](const Overrides &overrides) {
     RunOptions options;
     options.pictures = options.screen = false;
-    const Scene scene = read_scene(std::string(TALUS_SLOPES) + "/scene.toml", overrides);
+    Scene scene = read_scene(std::string(TALUS_SLOPES) + "/scene.toml", overrides);
+    scene.add_factor_stage();
     const auto simulation = make_simulation(PETSC_COMM_WORLD, scene, options);
     const auto line = simulation->factor_of_safety().slip_surface;
     EXPECT_GE(line.size(), 8u);
@@ -405,18 +410,28 @@ TEST(FactorOfSafety, of_steep_friction_without_dilation_is_that_of_its_own_flow)
   EXPECT_NEAR(half.value() / whole.value(), 0.5, 0.03);
 }
 
-/// A signal ends the search, in a stage or in the first trial after the stages.
+/// A signal ends the search, in a stage or in the first trial after the stages. The run goes on from there to the same
+/// factor.
 TEST(FactorOfSafety, ends_when_interrupted) {
+  TemporaryFolder folder;
+  ASSERT_TRUE(folder.make());
   Scene scene = read_scene(std::string(TALUS_SLOPES) + "/scene.toml", coarse);
   RunOptions options;
-  options.pictures = options.screen = false;
-  const auto simulation = make_simulation(PETSC_COMM_WORLD, scene, options);
-  simulation->run();
+  options.pictures = options.screen = false, options.directory = folder.path() + "/run";
+  make_simulation(PETSC_COMM_WORLD, scene, options)->run();
+  scene.add_factor_stage();
+  options.resume = true;
+  const auto resumed = make_simulation(PETSC_COMM_WORLD, scene, options);
   interrupted = 1;
   EXPECT_THROW(search("scene.toml", coarse), RunError);
-  EXPECT_THROW(simulation->factor_of_safety(), RunError);
+  EXPECT_THROW(resumed->run(), RunError);
   interrupted = 0;
-  for (const Event &event : simulation->events()) EXPECT_EQ(event.text.find("strength divided by"), std::string::npos);
+  int trials = 0;
+  for (const Event &event : resumed->events()) trials += event.kind == std::string(event::strength_trial);
+  EXPECT_EQ(trials, 0);
+  const auto again = make_simulation(PETSC_COMM_WORLD, scene, options);
+  again->run();
+  EXPECT_NEAR(again->factor_of_safety().value(), search("scene.toml", coarse).value(), 1e-9);
 }
 
 }  // namespace

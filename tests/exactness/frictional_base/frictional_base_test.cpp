@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "scene/reader.h"
+#include "scene/scene.h"
 #include "simulation.h"
 
 namespace talus {

@@ -12,7 +12,7 @@ echo bash >"$tree/packages.txt"
 echo '{}' >"$tree/CMakePresets.json"
 touch "$build/build.ninja" "$build/CMakeCache.txt" "$build/configured"
 printf '#!/bin/sh\necho "program: $*; launcher: $TALUS_LAUNCHER_COMMANDS"\n' >"$build/bin/talus"
-printf '#!/bin/sh\necho built >>"%s"\n' "$tree/built" >"$tree/tools/ninja"
+printf '#!/bin/sh\necho "built $*" >>"%s"\n' "$tree/built" >"$tree/tools/ninja"
 chmod +x "$build/bin/talus" "$tree/tools/ninja"
 export PATH=$tree/tools:$PATH
 
@@ -32,6 +32,9 @@ claim "--help of the tests may stand last" "builds the program and its tests and
 claim "help of the tests builds nothing" "nothing" "$([[ -e $tree/built ]] && echo something || echo nothing)"
 claim "the program knows the commands of the launcher" "launcher: test" "$(launch tset)"
 claim "a command builds" "built" "$(cat "$tree/built")"
+rm "$tree/built"
+claim "verify is the program's" "program: verify at_rest" "$(launch verify at_rest)"
+claim "its own program is built for it" "talus-verify" "$(cat "$tree/built")"
 
 exec 8>"$build/lock"
 flock 8

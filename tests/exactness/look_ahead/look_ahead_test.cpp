@@ -26,7 +26,7 @@ std::string scene_of(int dimension, const std::string &transfer) {
 /// Compressed unevenly, so that some cells yield.
 template <int dim>
 void compress(Soil<dim> &soil) {
-  const ParticleArrays<dim> &p = soil.particles();
+  ParticleArrays<dim> &p = soil.particles();
   for (int i = 0; i < p.count; ++i)
     for (int d = 0; d < 3; ++d)
       p.stress[i * stress_size<dim> + d] = -1e4 * (1 + std::sin(3 * p.position[i][0] + 2 * d));

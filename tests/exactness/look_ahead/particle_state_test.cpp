@@ -77,7 +77,7 @@ class ParticleState final : public Motion {
   }
 
   Soil<dim> &soil_;
-  const ParticleArrays<dim> &p_;
+  ParticleArrays<dim> &p_;
   int nodes_;
   std::vector<std::array<double, dim + 1>> shape_;
   std::vector<std::array<int, dim + 1>> node_;

@@ -6,6 +6,8 @@
 #include "mesh_source.h"
 #include "physics/soil_motion.h"
 #include "scene/reader.h"
+#include "scene/scene.h"
+#include "soil_tables.h"
 
 namespace talus {
 
@@ -13,22 +15,16 @@ template <int dim, class Phases = Dry>
 struct Soil {
   Soil(const std::string &text, double relaxation_time)
       : scene(parse_scene(text, "soil")), weighing(scene), pressure(weighing), file(PETSC_COMM_WORLD, scene) {
-    const BodySource &source = scene.body[0];
-    mesh = BackgroundMesh<dim>::read(PETSC_COMM_WORLD, file.path(), {{source.region[0], 5.}});
+    SoilTables tables = tables_of(scene, Phases::liquid);
+    mesh = BackgroundMesh<dim>::read(PETSC_COMM_WORLD, file.path(), {{tables.region, 5.}});
     pressure.set_regions(std::vector<int>(mesh.cell_count(), 0));
-    std::vector<typename Conditions<dim>::Source> sources;
-    for (const BoundarySource &b : scene.boundary)
-      sources.push_back({b.name, b.group.empty() ? std::vector{b.name} : b.group, read_boundary(b.kind)});
-    EXPECT_EQ(conditions.setup(mesh, std::move(sources)), 0);
+    EXPECT_EQ(conditions.setup(mesh, std::move(tables.boundaries)), 0);
     SurfaceLoads<dim> &loads = conditions.surface_loads();
     loads.share(mesh, std::vector<char>(mesh.cell_count(), 1));
     bodies.push_back(std::make_unique<Body<dim>>());
-    EXPECT_EQ(
-        bodies[0]->create(mesh.comm(), source, read_law(source.law), traits_of<Phases>.fluids(), loads.face_count()),
-        0);
-    const double water = Phases::liquid ? 0 : source.porosity * scene.water.density;
-    const double density = source.density > 0 ? source.density : (1 - source.porosity) * source.grain_density + water;
-    seed<dim>(*bodies[0], mesh, 8, [&](const Vec<dim> &) { return density; });
+    EXPECT_EQ(bodies[0]->create(mesh.comm(), tables.body, tables.law, traits_of<Phases>.fluids(), loads.face_count()),
+              0);
+    seed<dim>(*bodies[0], mesh, 8, [&](const Vec<dim> &) { return tables.density; });
     loads.seed(*bodies[0], mesh);
     EXPECT_EQ(bodies[0]->sort(mesh.cell_count()), 0);
     double mass = 0;
@@ -39,7 +35,7 @@ struct Soil {
     motion->loading.gravity[1] = scene.gravity[1];
     EXPECT_EQ(motion->setup_pores(true), 0);
   }
-  const ParticleArrays<dim> &particles() const { return bodies[0]->particles(); }
+  ParticleArrays<dim> &particles() const { return bodies[0]->particles(); }
 
   Scene scene;
   /// The scene in which water weighs: tests set the gravity of the motion themselves.

@@ -3,6 +3,7 @@
     maps_test.py TALUS MPIEXEC"""
 
 import contextlib
+import io
 import os
 import pathlib
 import re
@@ -108,6 +109,20 @@ def talus(*words, ranks=1, status=0):
                            env={**os.environ, "OMP_NUM_THREADS": "1"})
     assert ended.returncode == status, f"talus {words} ended with {ended.returncode}: {ended.stdout}"
     return ended.stdout
+
+
+def mapped(results, *options, status=0):
+    """What the script of `talus maps` says, without the start of the program and the pictures, which take most of the time."""
+    said, ended = io.StringIO(), 0
+    words = ["talus_maps.py", str(FOLDER / results), *map(str, options)]
+    with (unittest.mock.patch.object(sys, "argv", words), unittest.mock.patch.object(talus_maps, "draw_map"),
+          unittest.mock.patch.object(talus_maps, "draw_section"), contextlib.redirect_stdout(said), contextlib.redirect_stderr(said)):
+        try:
+            talus_maps.main()
+        except SystemExit as end:
+            ended = end.code
+    assert ended == status, f"maps of {results} {options} ended with {ended}: {said.getvalue()}"
+    return said.getvalue()
 
 
 def read(path):
@@ -404,7 +419,7 @@ class Maps(unittest.TestCase):
         self.assertAlmostEqual(inside, numbers["volume_m3"], delta=1e-5 * inside)
         self.assertAlmostEqual(whole, volume_of("block1"), delta=1e-5 * whole)
         self.assertLess(inside, 0.9 * whole)
-        said = talus("maps", "block1", "--spacing", 0.25, "--limit", limit)
+        said = mapped("block1", "--spacing", 0.25, "--limit", limit)
         self.assertNotIn("the outline holds", said)
         numbers, _, _ = feature("block1", "outline")
         self.assertGreaterEqual(numbers["volume_m3"], 0.95 * whole)
@@ -439,14 +454,14 @@ class Maps(unittest.TestCase):
     def test_soil_that_stands_has_not_slid(self):
         velocity = ["--set", 'body.block.velocity=["0.5","0","0"]']  # 0.05 m at the end, a third of the spacing of particles
         talus("run", "block.toml", "-o", "stands", "--no-pictures", *velocity)
-        said = talus("maps", "stands", "--spacing", 0.25, status=2)
+        said = mapped("stands", "--spacing", 0.25, status=2)
         self.assertIn("no soil has slid far enough for a map", said)
         self.assertIn("the largest displacement, 0.05 m", said)
 
     def test_particles_that_left_are_said(self):
         (FOLDER / "longer.toml").write_text(BLOCK.replace("duration = 0.1", "duration = 0.23"))
         talus("run", "longer.toml", "-o", "left", "--no-pictures")
-        said = talus("maps", "left", "--spacing", 0.25)
+        said = mapped("left", "--spacing", 0.25)
         gone = volume_of("left", 0) - volume_of("left")
         self.assertIn(f"with a volume of {gone:.4g} m3 at the start left the mesh", said)
         arrival, _, _ = read(FOLDER / "left/maps/arrival_time.tif")
@@ -459,43 +474,43 @@ class Maps(unittest.TestCase):
             slow = np.arange(len(moved)) % 4 == 0
             moved[~slow] *= 20  # the others move by a twentieth of that
             last["displacement"][...] = moved
-        said = talus("maps", "torn", "--spacing", 0.25)
+        said = mapped("torn", "--spacing", 0.25)
         self.assertIn(f"{volume[slow].sum():.3g} m3 that moved by 1 to 1 m are not mapped", said)
         self.assertIn("by more than a tenth of the largest displacement", said)
         self.assertAlmostEqual(read(FOLDER / "torn/maps/thickness.tif")[0].sum() * 0.0625, volume[~slow].sum(), delta=1e-6)
-        said = talus("maps", "torn", "--spacing", 0.25, "--moved", 0.9)
+        said = mapped("torn", "--spacing", 0.25, "--moved", 0.9)
         self.assertNotIn("not mapped", said)
         self.assertAlmostEqual(read(FOLDER / "torn/maps/thickness.tif")[0].sum() * 0.0625, volume.sum(), delta=1e-6)
-        self.assertIn("is below --moved 50 m", talus("maps", "block1", "--moved", 50, status=2))
+        self.assertIn("is below --moved 50 m", mapped("block1", "--moved", 50, status=2))
 
     def test_what_cannot_be_mapped_is_refused(self):
         (FOLDER / "empty").mkdir(exist_ok=True)
         self.assertIn("there is no run.h5", talus("maps", "empty", status=2))
         talus("run", "block.toml", "-o", "flat", "--no-pictures", "--set", "dimension=2", "--set", "body.block.velocity=[\"10\",\"0\"]",
               "--set", "mesh.thickness=1", "--set", "output.interval=0.1")
-        self.assertIn("is a run in 2D", talus("maps", "flat", status=2))
-        self.assertIn("nowhere as thick", talus("maps", "block1", "--limit", 5, status=2))
-        self.assertIn("choose a larger spacing", talus("maps", "block1", "--spacing", 1e-5, status=2))
-        self.assertIn("single particles show", talus("maps", "block1", "--spacing", 0.06))
+        self.assertIn("is a run in 2D", mapped("flat", status=2))
+        self.assertIn("nowhere as thick", mapped("block1", "--limit", 5, status=2))
+        self.assertIn("choose a larger spacing", mapped("block1", "--spacing", 1e-5, status=2))
+        self.assertIn("single particles show", mapped("block1", "--spacing", 0.06))
 
     def test_thickness_does_not_depend_on_the_cells(self):
         """The block is 0.5 m thick everywhere. Its particles are as irregular as the tetrahedra they are in: their columns have up to twice that."""
         for spacing in (0.05, 0.1, 0.25):
-            talus("maps", "block1", "--spacing", spacing)
+            mapped("block1", "--spacing", spacing)
             numbers, _, _ = feature("block1", "outline")
             self.assertAlmostEqual(numbers["largest_thickness_m"], 0.5, delta=0.2, msg=f"cells of {spacing} m")
 
     def test_interrupted_run(self):
-        talus("run", "block.toml", "-o", "broken", "--no-pictures")
+        shutil.copytree(FOLDER / "block1", FOLDER / "broken", dirs_exist_ok=True)
         log = FOLDER / "broken/events.jsonl"
         whole = log.read_text()
         log.write_text(whole + '{"kind": "broke_off", "text": "the disk is full"}\n')
-        self.assertIn("the run broke off: the disk is full; the maps show it up to 0.1 s", talus("maps", "broken", "--spacing", 0.25))
+        self.assertIn("the run broke off: the disk is full; the maps show it up to 0.1 s", mapped("broken", "--spacing", 0.25))
         log.write_text("".join(line for line in whole.splitlines(keepends=True) if '"end"' not in line))
-        said = talus("maps", "broken", "--spacing", 0.25)
+        said = mapped("broken", "--spacing", 0.25)
         self.assertIn("warning: the run is incomplete: it was killed, or still runs, since run.log has no end; the maps show it up to 0.1 s", said)
         log.write_text(whole)
-        self.assertNotIn("incomplete", talus("maps", "broken", "--spacing", 0.25))
+        self.assertNotIn("incomplete", mapped("broken", "--spacing", 0.25))
 
 
 if __name__ == "__main__":

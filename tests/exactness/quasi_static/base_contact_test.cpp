@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "scene/scene.h"
 #include "solved.h"
 
 namespace talus {
@@ -123,6 +124,7 @@ TEST(BaseContact, lifts_a_wedge_out_of_a_groove) {
 
 FactorOfSafety factor_of(const std::string &text, const Keys &keys) {
   Scene scene = parse_scene(text, meshes + "/scene.toml", keys);
+  scene.add_factor_stage();
   RunOptions options;
   options.pictures = options.screen = false;
   return make_simulation(PETSC_COMM_WORLD, scene, options)->factor_of_safety();

@@ -1,4 +1,5 @@
 // The factor of safety: laws that it refuses, and soil that it leaves as it is.
+#include "scene/scene.h"
 #include "solved.h"
 
 namespace talus {
@@ -10,6 +11,7 @@ struct Reduced {
 };
 Reduced reduce(const std::string &text, const std::vector<std::string> &overrides = {}) {
   Scene scene = parse_scene(text, meshes + "/scene.toml", overrides);
+  scene.add_factor_stage();
   RunOptions options;
   options.pictures = options.screen = false;
   const auto simulation = make_simulation(PETSC_COMM_WORLD, scene, options);

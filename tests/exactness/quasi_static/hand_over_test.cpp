@@ -1,4 +1,5 @@
 // What quasi-static stages and motion hand over to each other.
+#include "scene/scene.h"
 #include "solved.h"
 
 namespace talus {

@@ -1,5 +1,6 @@
 // What practice asks of a slope: earthquakes as a share of gravity, weights given as unit weights, strength that
 // differs from place to place.
+#include "scene/scene.h"
 #include "solved.h"
 
 namespace talus {
@@ -245,6 +246,7 @@ TEST(Practice, earth_pressure_at_rest_follows_the_friction_of_the_place) {
 
 double factor_of(const std::string &text, const std::vector<std::string> &overrides) {
   Scene scene = parse_scene(text, meshes + "/scene.toml", overrides);
+  scene.add_factor_stage();
   RunOptions options;
   options.pictures = options.screen = false;
   return make_simulation(PETSC_COMM_WORLD, scene, options)->factor_of_safety().value();

@@ -9,6 +9,7 @@
 #include <map>
 
 #include "scene/reader.h"
+#include "scene/scene.h"
 #include "simulation.h"
 
 namespace talus {

@@ -1,4 +1,5 @@
 // Seepage and consolidation where the answer is known.
+#include "scene/scene.h"
 #include "solved.h"
 
 namespace talus {
@@ -151,7 +152,7 @@ TEST(Water, has_no_other_boundaries_inside_the_soil) {
     return said.find("boundary.drain.kind") != std::string::npos &&
            said.find("lies inside the soil") != std::string::npos;
   };
-  EXPECT_TRUE(refused({"boundary.drain.kind=pore_pressure", "stage.0.kind=dynamic", "stage.0.steady=false"}));
+  EXPECT_TRUE(refused({"boundary.drain.kind=pore_pressure", "stage.0={kind='dynamic', duration=1}"}));
   EXPECT_FALSE(refused({"boundary.drain.kind=pore_pressure"}));
   EXPECT_TRUE(refused({"boundary.drain.kind=impermeable"}));
   EXPECT_TRUE(refused({"boundary.drain.kind=rainfall"}));

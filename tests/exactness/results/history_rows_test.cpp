@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "../quasi_static/solved.h"
+#include "scene/scene.h"
 
 namespace talus {
 namespace {

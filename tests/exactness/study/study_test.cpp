@@ -8,6 +8,7 @@
 
 #include "csv_table.h"
 #include "scene.h"
+#include "scene/scene.h"
 
 namespace talus {
 namespace {

@@ -49,7 +49,7 @@ void stress_and_volume_follow_the_deformation() {
       slender = std::max(slender, shape[c].gradient.template bottomRows<dim>().squaredNorm() /
                                       exact.shape[c].gradient.template bottomRows<dim>().squaredNorm());
     }
-    EXPECT_NEAR(motion.step_ratio(), 1 / std::sqrt(slender), 1e-12) << "(5.6)";
+    EXPECT_NEAR(motion.measures().step_ratio, 1 / std::sqrt(slender), 1e-12) << "(5.6)";
     if (locking == "patches") mean = exact.over_patches(volume_strain, exact.weight);
     if (locking == "none") mean = volume_strain;
     if (locking == "nodal") {  // means over the cells of a node, weighted by volume, then over the nodes of a cell

@@ -155,7 +155,7 @@ struct Box {
   explicit Box(const std::string &more_body = "", const std::string &more = "", double relaxation_time = 0,
                bool uneven = true)
       : file(test::BoxMesh(dim, 2)), soil(scene(more_body, more), relaxation_time) {
-    const ParticleArrays<dim> &p = soil.particles();
+    ParticleArrays<dim> &p = soil.particles();
     for (int i = 0; uneven && i < p.count; ++i) {
       p.volume[i] *= (dim == 2 ? 0.78 : 0.68) + 0.04 * drawn(i, 0);  // nodes are filled between r_0 and r_0 + 0.2
       p.mass[i] *= 1 + 0.2 * drawn(i, 1);

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "scene/reader.h"
+#include "scene/scene.h"
 #include "simulation.h"
 
 namespace talus {
@@ -155,9 +156,8 @@ TEST(Energy, ends_a_run_that_creates_it_whatever_the_history) {
     const Scene scene =
         parse_scene(slope("strip_on_slope.csv", clay, "[7.9, 7.95]", 0) + strip("[[0, 0], [0.1, \"5 kPa\"]]"),
                     std::string(TALUS_MESHES) + "/scene.toml",
-                    {"mesh.size=1.4", "stage.1.until=duration", "stage.1.failure_point=", "stage.1.duration=5",
-                     "integrator.kind=forward-euler", "integrator.fraction=0.5",
-                     std::string("output.history_interval=") + interval});
+                    {"mesh.size=1.4", "stage.1={name='loading', duration=5}", "integrator.kind=forward-euler",
+                     "integrator.fraction=0.5", std::string("output.history_interval=") + interval});
     RunOptions options;
     options.pictures = options.screen = false;
     const auto simulation = make_simulation(PETSC_COMM_WORLD, scene, options);

@@ -67,7 +67,7 @@ template <int dim>
 void light_nodes_are_not_accelerated() {
   for (const double near : {0., 1e-10}) {
     Box<dim> box;
-    const ParticleArrays<dim> &p = box.soil.particles();
+    ParticleArrays<dim> &p = box.soil.particles();
     int corner = 0;
     for (int i = 0; i < box.soil.mesh.node_count(); ++i)
       if (map<dim>(box.soil.mesh.position[i]).norm() < 1e-12) corner = i;

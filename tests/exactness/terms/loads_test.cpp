@@ -105,7 +105,7 @@ TALUS_IN_2D_AND_3D(Loads, pressure_follows_the_face)
 template <int dim>
 void pieces_stay_within_a_cell_of_their_soil() {
   Box<dim> box("", load + "pressure = 700\n", 0, false);
-  const ParticleArrays<dim> &p = box.soil.particles();
+  ParticleArrays<dim> &p = box.soil.particles();
   for (int i = 0; i < p.count; ++i)
     if (p.surface[i].area > 0)
       for (int d = 0; d < dim; ++d) p.surface[i].offset[d] *= 50;

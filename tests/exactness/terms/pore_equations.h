@@ -21,7 +21,7 @@ struct WetBox : Box<dim, Phases> {
                                                 "\"hillel\"\n"
                                               : ""),
                          more, relaxation_time) {
-    const ParticleArrays<dim> &p = this->soil.particles();
+    ParticleArrays<dim> &p = this->soil.particles();
     for (int i = 0; i < p.count; ++i) {
       p.mass[i] *= 0.7;
       const double pores = p.volume[i] - p.mass[i] / grain_density;

@@ -108,7 +108,7 @@ TALUS_IN_2D_AND_3D(Transfer, particles_take_the_change_of_the_nodes)
 template <int dim>
 void round_off_of_a_place_gives_a_node_without_mass_no_velocity() {
   Box<dim> box;
-  const ParticleArrays<dim> &p = box.soil.particles();
+  ParticleArrays<dim> &p = box.soil.particles();
   const BackgroundMesh<dim> &mesh = box.soil.mesh;
   constexpr int corner = 0;
   for (int i = 0; i < p.count; ++i) {

@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "scene/reader.h"
+#include "scene/scene.h"
 #include "simulation.h"
 
 namespace talus {

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "scene/reader.h"
+#include "scene/scene.h"
 #include "simulation.h"
 
 namespace talus {

@@ -10,6 +10,7 @@
 #include <map>
 
 #include "scene/reader.h"
+#include "scene/scene.h"
 #include "simulation.h"
 #include "tests/unit/meshes/box_mesh.h"
 

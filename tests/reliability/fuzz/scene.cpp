@@ -3,9 +3,12 @@
 
 #include "input.h"
 #include "physics/boundary/boundary.h"
-#include "physics/laws/laws.h"
+#include "physics/laws/law.h"
 #include "physics/pores/soil_pores.h"
+#include "scene/body_source.h"
+#include "scene/boundary_source.h"
 #include "scene/reader.h"
+#include "scene/water_source.h"
 
 namespace talus {
 namespace {
@@ -24,7 +27,7 @@ void read_tables(const Scene &scene) {
       for (const Function &function : *functions) evaluate(function);
   }
   for (const BoundarySource &boundary : scene.boundary) take_or_refuse([&] { (void)read_boundary(boundary.kind); });
-  evaluate(scene.water.level), evaluate(scene.water.excess);
+  evaluate(scene.water->level), evaluate(scene.water->excess);
 }
 
 }  // namespace

@@ -8,6 +8,9 @@
 
 #include "physics/boundary/kinds.h"
 #include "physics/boundary/pore_conditions.h"
+#include "scene/body_source.h"
+#include "scene/boundary_source.h"
+#include "scene/scene.h"
 #include "solvers/quasi_static/loads.h"
 #include "solvers/quasi_static/pore_flow.h"
 #include "solvers/quasi_static/supports.h"

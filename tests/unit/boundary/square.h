@@ -5,6 +5,7 @@
 #include "../meshes/box_mesh.h"
 #include "physics/boundary/conditions.h"
 #include "scene/reader.h"
+#include "scene/scene.h"
 
 namespace talus {
 

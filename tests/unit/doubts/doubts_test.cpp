@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "scene/scene.h"
 #include "simulation/scene_keys.h"
 
 namespace talus {

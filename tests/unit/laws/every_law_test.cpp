@@ -1,4 +1,4 @@
-/// What holds for any law. A new law is tested here as soon as it stands in `Law`; it brings its examples.
+/// What holds for any law. A new law is tested here as soon as it stands in `Laws`; it brings its examples.
 #include <gtest/gtest.h>
 
 #include <set>
@@ -11,7 +11,7 @@ namespace {
 
 template <class OneLaw>
 class EveryLaw : public ::testing::Test {};
-TYPED_TEST_SUITE(EveryLaw, TypesOf<Law>::type);
+TYPED_TEST_SUITE(EveryLaw, TypesOf<Laws>::type);
 
 TYPED_TEST(EveryLaw, says_what_it_remembers) {
   std::set<std::string> names;

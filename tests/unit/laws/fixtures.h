@@ -4,6 +4,7 @@
 #include <random>
 #include <vector>
 
+#include "physics/laws/laws.h"
 #include "physics/laws/update_stress.h"
 
 namespace talus {

@@ -37,7 +37,7 @@ TEST(ReadLaw, fills_the_law_that_is_named) {
   const Law law = read(
       "law = \"mohr_coulomb\"\nyoung_modulus = \"10 MPa\"\npoisson_ratio = 0.25\ncohesion = \"20 kPa\"\n"
       "friction_angle = 30\nresidual_cohesion = 0\nshape_factor = 500\nreference_size = \"20 cm\"\n");
-  const auto &soil = std::get<MohrCoulomb>(law);
+  const auto &soil = *law.as<MohrCoulomb>();
   EXPECT_DOUBLE_EQ(soil.young_modulus, 1e7);
   EXPECT_DOUBLE_EQ(soil.cohesion, 2e4);
   EXPECT_DOUBLE_EQ(soil.friction_angle, 30 * degree.si);
@@ -68,8 +68,8 @@ TEST(ReadLaw, takes_rates_per_pressure) {
       "suction_cohesion = \"15 kPa\"\n";
   const Law law = read(rest + "suction_cohesion_rate = \"0.0007 1/kPa\"\nsuction_friction_rate = \"0.0001 deg/kPa\"\n");
   EXPECT_TRUE(reads_suction(law));
-  EXPECT_DOUBLE_EQ(std::get<MohrCoulomb>(law).suction_cohesion_rate, 7e-7);
-  EXPECT_DOUBLE_EQ(std::get<MohrCoulomb>(law).suction_friction_rate, 1e-7 * degree.si);
+  EXPECT_DOUBLE_EQ(law.as<MohrCoulomb>()->suction_cohesion_rate, 7e-7);
+  EXPECT_DOUBLE_EQ(law.as<MohrCoulomb>()->suction_friction_rate, 1e-7 * degree.si);
   EXPECT_THROW(read(rest + "suction_cohesion_rate = 0.0007\n"), SceneError);
   EXPECT_THROW(read(rest + "suction_cohesion_rate = \"0.0007 kPa\"\n"), SceneError);
 }

@@ -16,8 +16,9 @@ void expect_shares_are_strength() {
   Random random;
   for (OneLaw whole : examples<OneLaw>()) {
     OneLaw part = whole;
-    part.take_shares(of_c, of_phi);
-    part.dilation_angle = whole.dilation_angle;  // limited to phi at the point, not in the parameters
+    part.cohesion *= of_c, part.friction_angle *= of_phi;
+    if (part.residual_cohesion > 0) part.residual_cohesion *= of_c;
+    if (part.residual_friction_angle > 0) part.residual_friction_angle *= of_phi;
     whole.reads_shares = true;
     constexpr int count = 40;
     Points<3> shared(whole, count, 0.5);
@@ -61,7 +62,7 @@ TEST(StrengthByPlace, differs_from_point_to_point) {
       points.increment[i].strain = {0, 0, 0, 0.05};
     }
     Points<2> plain = points, blind = points;
-    std::get<MohrCoulomb>(blind.law).reads_shares = false;
+    clay.reads_shares = false, blind.law = clay;
     StressPoints<2> view = points.view(), unread = blind.view();
     view.cohesion_share = share.data(), view.friction_share = one.data();
     unread.cohesion_share = share.data(), unread.friction_share = one.data();
@@ -101,8 +102,8 @@ TEST(StrengthByPlace, is_read_from_expressions) {
   EXPECT_EQ(range.cohesion[0], 20e3);
   EXPECT_EQ(range.cohesion[1], 29e3);
   EXPECT_EQ(take_largest(law, range), "");
-  EXPECT_EQ(std::get<MohrCoulomb>(law).cohesion, 29e3);
-  EXPECT_NEAR(std::get<MohrCoulomb>(law).friction_angle, 30 * degree.si, 1e-15);
+  EXPECT_EQ(frictional_strength(law)->cohesion, 29e3);
+  EXPECT_NEAR(frictional_strength(law)->friction_angle, 30 * degree.si, 1e-15);
   EXPECT_DOUBLE_EQ(strength.shares(law, 3, 6, 0).cohesion, 26. / 29);
   EXPECT_EQ(strength.shares(law, 3, 6, 0).friction, 1);
   const DeferredTable numbers = table("law = \"drucker_prager\"\ncohesion = \"20 kPa\"\nfriction_angle = 30\n");

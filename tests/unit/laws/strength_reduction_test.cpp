@@ -12,7 +12,7 @@ namespace {
 
 template <class OneLaw>
 class StrengthReduction : public ::testing::Test {};
-TYPED_TEST_SUITE(StrengthReduction, TypesOf<Law>::type);
+TYPED_TEST_SUITE(StrengthReduction, TypesOf<Laws>::type);
 
 TYPED_TEST(StrengthReduction, is_there_or_says_why_not) {
   for (const TypeParam &law : examples<TypeParam>()) {

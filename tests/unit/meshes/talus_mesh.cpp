@@ -8,6 +8,8 @@
 #include <fstream>
 #include <sstream>
 
+#include "meshes/mesh_request.h"
+
 namespace talus {
 namespace {
 
@@ -67,6 +69,41 @@ TEST_F(TalusMesh, MakesTheSameMeshEveryTime) {
   const std::string arguments = TALUS_SECTIONS "selborne.csv --size 1 --dimension 3 -o ";
   ASSERT_EQ(run(arguments + in_folder("a.msh")).status, 0);
   ASSERT_EQ(run(arguments + in_folder("b.msh")).status, 0);
+  EXPECT_EQ(content(in_folder("a.msh")), content(in_folder("b.msh")));
+}
+
+TEST(MeshRequest, ComesOutOfItsDocumentAsItWentIn) {
+  MeshRequest request{3, {}};
+  MeshSource &mesh = request.mesh;
+  mesh.size = 0.1, mesh.layers = 0, mesh.cuts = {0.5, 1};
+  mesh.refine = {{.from = {0, 1}, .to = {2, 3}, .size = 0.2}};
+  TerrainSource &terrain = mesh.terrain;
+  terrain.file = "a \"b\".asc", terrain.window = {1, 2, 3, 4}, terrain.depth_shape = DepthShape::constant;
+  terrain.layer = {{.name = "rock", .file = "r.asc"}, {.name = "clay", .file = "c.asc"}};
+  terrain.way = {{0, 0}, {1. / 3, 2}};
+  terrain.ellipsoid = {true, {1, 2, 3}, {4, 5, 6}, 10 * degree.si, 90 * degree.si};
+  const MeshRequest read = mesh_request_in(text_of(request));
+  EXPECT_EQ(text_of(read), text_of(request));
+  EXPECT_EQ(read.dimension, 3);
+  EXPECT_EQ(read.mesh.refine.at(0).to, mesh.refine[0].to);
+  EXPECT_EQ(read.mesh.terrain.way, terrain.way);
+  EXPECT_EQ(read.mesh.terrain.layer.at(1).name, "clay");
+  EXPECT_EQ(read.mesh.terrain.depth_shape, DepthShape::constant);
+  EXPECT_EQ(read.mesh.terrain.ellipsoid.dip, 10 * degree.si);
+  EXPECT_FALSE(mesh_request_in(text_of({})).mesh.terrain.ellipsoid.given);
+}
+
+TEST_F(TalusMesh, TakesARequestInPlaceOfOptions) {
+  ASSERT_EQ(
+      run(TALUS_SECTIONS "box.csv --size 0.2 --dimension 3 --thickness 0.5 --layers 2 --refine 0 0 0.3 0.3 0.05 -o " +
+          in_folder("a.msh"))
+          .status,
+      0);
+  MeshRequest request{3, {}};
+  request.mesh.section = TALUS_SECTIONS "box.csv";
+  request.mesh.size = 0.2, request.mesh.thickness = 0.5, request.mesh.layers = 2;
+  request.mesh.refine = {{.from = {0, 0}, .to = {0.3, 0.3}, .size = 0.05}};
+  ASSERT_EQ(run("--request " + write("request.json", text_of(request)) + " -o " + in_folder("b.msh")).status, 0);
   EXPECT_EQ(content(in_folder("a.msh")), content(in_folder("b.msh")));
 }
 

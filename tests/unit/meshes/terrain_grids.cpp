@@ -185,7 +185,7 @@ TEST_F(TerrainFiles, AreRefusedAtOnceWhenMostOfThemIsMissing) {
                                         << "\ncellsize 10\n90 80 70\n90 80 70\n";
   const std::string begun = in_folder("begun.asc"), mesh = " -o " + in_folder("m.msh"), cells = " --size 20 --air 20";
   for (const std::string &arguments :
-       {begun + mesh + cells, begun + mesh + " --values", ascii(plane) + mesh + cells + " --slip-surface " + begun}) {
+       {begun + mesh + cells, "--values " + begun + mesh, ascii(plane) + mesh + cells + " --slip-surface " + begun}) {
     const Answer answer = run(arguments);
     EXPECT_EQ(answer.status, 2) << arguments;  // 124: it was still reading
     expect_words(answer.text, {"begun.asc: ends early or is damaged, so that not all of its 500 rows of 3 values"});

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <map>
 
+#include "physics/laws/laws.h"
+#include "scene/body_source.h"
 #include "simulation/output_fields.h"
 
 namespace talus {

@@ -5,6 +5,9 @@
 
 #include <cmath>
 
+#include "physics/laws/laws.h"
+#include "scene/body_source.h"
+
 namespace talus {
 namespace {
 
@@ -58,7 +61,7 @@ double rest(const Law &law, double mean_pressure, double dilation) {
   Body<2> body;
   EXPECT_EQ(body.create(PETSC_COMM_SELF, source, law, 0, 0), 0);
   EXPECT_EQ(body.resize(1), 0);
-  const ParticleArrays<2> &p = body.particles();
+  ParticleArrays<2> &p = body.particles();
   p.volume[0] = initial;
   for (int s = 0; s < stress_size<2>; ++s) p.stress[s] = s < 3 ? -mean_pressure + (s - 1) * 1e4 : 5e3;
   for (int h = 0; h < body.history_count(); ++h) p.history[h] = h == history_field(law, "dilation") ? dilation : 2;
@@ -91,7 +94,7 @@ TEST(Body, loses_the_particles_that_are_taken_out_and_no_others) {
   ASSERT_EQ(body.create(PETSC_COMM_SELF, source, soil(1e3, 5), 1, 0), 0);
   ASSERT_EQ(body.resize(count), 0);
   const auto fill = [&](int i) {
-    const ParticleArrays<2> &p = body.particles();
+    ParticleArrays<2> &p = body.particles();
     p.id[i] = 1000 + i, p.cell[i] = i, p.mass[i] = i, p.volume[i] = 2 * i, p.position[i] = {3. * i, 4. * i};
     p.fluid_mass[0][i] = 5 * i, p.fluid_velocity[0][i] = {6. * i, 7. * i};
     for (int k = 0; k < stress_size<2>; ++k) p.stress[i * stress_size<2> + k] = 8 * i + k;

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "physics/pores/soil_pores.h"
+#include "scene/body_source.h"
 #include "scene/reader.h"
 
 namespace talus {

@@ -5,6 +5,7 @@
 
 #include "fixtures.h"
 #include "physics/pores/hyperbolicity.h"
+#include "scene/water_source.h"
 
 namespace talus {
 namespace {

@@ -6,8 +6,13 @@
 #include <set>
 
 #include "complaint.h"
+#include "scene/body_source.h"
+#include "scene/boundary_source.h"
+#include "scene/output_source.h"
 #include "scene/reader.h"
 #include "scene/scene.h"
+#include "scene/stage.h"
+#include "scene/water_source.h"
 
 namespace talus {
 namespace {
@@ -86,17 +91,17 @@ TEST(ReadScene, ReadsADryScene) {
   EXPECT_EQ(scene.body[0].density, 2000);
   EXPECT_TRUE(scene.body[0].law.reader);
   EXPECT_FALSE(scene.integrator.reader);
-  EXPECT_FALSE(scene.water.given);
+  EXPECT_FALSE(scene.water->given);
   EXPECT_EQ(scene.boundary[0].group, std::vector<std::string>{"base"});
   EXPECT_EQ(scene.stage[0].duration, 60);
-  EXPECT_EQ(scene.output.point[0].name, "crest");
+  EXPECT_EQ(scene.output->point[0].name, "crest");
 }
 
 TEST(ReadScene, ReadsADrainedScene) {
   const Scene scene = parse_scene(drained, "slope.toml");
   EXPECT_EQ(scene.phases, PhaseModel::drained);
-  EXPECT_TRUE(scene.water.given);
-  EXPECT_EQ(scene.water.table.points[1], (std::vector<double>{10, 2}));
+  EXPECT_TRUE(scene.water->given);
+  EXPECT_EQ(scene.water->table.points[1], (std::vector<double>{10, 2}));
   EXPECT_EQ(scene.body[0].grain_density, 2650);
   EXPECT_EQ(scene.gravity, (std::vector<double>{0, 0}));
 }
@@ -108,13 +113,13 @@ TEST(ReadScene, PointsASingleGravityDownInThreeDimensions) {
 
 TEST(ReadScene, PointsOfASectionLieInTheMiddleOfItsBody) {
   const std::string text = drained + "[output.point.crest]\nposition = [1, 2]\n";
-  EXPECT_EQ(parse_scene(text, "slope.toml").output.point[0].position, (std::vector<double>{1, 2}));
+  EXPECT_EQ(parse_scene(text, "slope.toml").output->point[0].position, (std::vector<double>{1, 2}));
   const Scene slice = parse_scene(text, "slope.toml", {"dimension=3", "output.line.slip.points=[[0, 1], [4, 2, 0.1]]"});
-  EXPECT_EQ(slice.output.point[0].position, (std::vector<double>{1, 2, 0.5}));  // of a cell of 1 m
-  EXPECT_EQ(slice.output.line[0].points[0], (std::vector<double>{0, 1, 0.5}));
-  EXPECT_EQ(slice.output.line[0].points[1], (std::vector<double>{4, 2, 0.1}));
+  EXPECT_EQ(slice.output->point[0].position, (std::vector<double>{1, 2, 0.5}));  // of a cell of 1 m
+  EXPECT_EQ(slice.output->line[0].points[0], (std::vector<double>{0, 1, 0.5}));
+  EXPECT_EQ(slice.output->line[0].points[1], (std::vector<double>{4, 2, 0.1}));
   const Scene thick = parse_scene(text, "slope.toml", {"dimension=3", "mesh.thickness=6"});
-  EXPECT_EQ(thick.output.point[0].position, (std::vector<double>{1, 2, 3}));
+  EXPECT_EQ(thick.output->point[0].position, (std::vector<double>{1, 2, 3}));
   EXPECT_NE(refusal(dry, {"dimension=3"}).find("must have 3 coordinates, not 2"),
             std::string::npos);  // a mesh from a file
 }
@@ -295,7 +300,47 @@ TEST(ReadScene, AddsAnEarthquakeToGravity) {
 
 TEST(ReadScene, TakesAFailureStageThatWatchesAnOutputPoint) {
   const Scene scene = parse_scene(dry, "slope.toml", {"stage.0.until=failure", "stage.0.failure_point=crest"});
-  EXPECT_EQ(scene.stage[0].until, StopWhen::failure);
+  ASSERT_TRUE(scene.stage[0].motion());
+  EXPECT_EQ(std::get<AtFailure>(scene.stage[0].motion()->until).failure_point, "crest");
+  EXPECT_TRUE(scene.stage[0].stop().early);
+  EXPECT_FALSE(scene.stage[0].stop().waits_for_loads);
+}
+
+/// What the program asks of a kind of stage.
+TEST(ReadScene, KnowsTheTraitsOfStages) {
+  const auto stage = [](const std::string &kind) {
+    const std::string more = kind == "dynamic" ? "" : "load_steps = 7\nadd = ['fill']\ninitial_stress = 'k0'\n";
+    Scene scene = parse_scene(
+        "phases = 'saturated'\ngravity = 10\n[mesh]\nfile = 'a'\n[body.fill]\nregion = 'a'\nporosity = 0.4\n"
+        "grain_density = 2650\npermeability = 1e-12\n[water]\n[[stage]]\nduration = 1\nkind = '" +
+            kind + "'\n" + more,
+        "a.toml");
+    return scene.stage[0];
+  };
+  const Stage moves = stage("dynamic"), rests = stage("quasi_static"), seeps = stage("seepage"),
+              consolidates = stage("consolidation");
+  EXPECT_FALSE(moves.is_static() || moves.water_flows() || moves.finite_elements() || moves.begins_at_rest());
+  EXPECT_TRUE(rests.is_static() && rests.soil_moves() && !rests.water_flows() && !rests.motion());
+  EXPECT_TRUE(seeps.is_static() && !seeps.soil_moves() && seeps.water_flows() && seeps.seeps());
+  EXPECT_TRUE(consolidates.is_static() && consolidates.soil_moves() && consolidates.water_flows());
+  for (const Stage &one : {rests, seeps, consolidates}) {
+    EXPECT_EQ(one.finite_elements()->load_steps, 7);
+    EXPECT_TRUE(one.adds("fill") && !one.removes("fill") && one.begins_at_rest());
+  }
+}
+
+/// The stage that `talus solve --factor-of-safety` adds is the one that a scene may have.
+TEST(ReadScene, MayLookForAFactorOfSafety) {
+  Scene scene = parse_scene(dry, "slope.toml", {"stage.0.kind=quasi_static"});
+  EXPECT_FALSE(scene.finds_factor());
+  scene.add_factor_stage();
+  scene.add_factor_stage();
+  ASSERT_EQ(scene.stage.size(), 2u);
+  EXPECT_TRUE(scene.finds_factor() && scene.stage[1].is_static() && !scene.stage[1].soil_moves());
+  const Scene given = parse_scene(std::string(dry) + "\n[[stage]]\nkind = 'factor_of_safety'\n", "slope.toml",
+                                  {"stage.0.kind=quasi_static"});
+  EXPECT_TRUE(given.stage[1].finds_factor());
+  EXPECT_EQ(given.stage[1].duration, 0);
 }
 
 TEST(ReadScene, LeavesTheMeshToAHost) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "scene/transfer_source.h"
 #include "simulation/work.h"
 
 namespace talus {

@@ -3,7 +3,7 @@
 /// exp(-100) of its first velocity is left, which is less than round-off.
 #include <cmath>
 
-#include "commands/rung.h"
+#include "tests/verify/rung.h"
 
 namespace talus::rungs {
 

@@ -5,7 +5,7 @@
 /// / d eps_v = 2 eta / (M^2 - eta^2) along these paths, in README.md.
 #include <cmath>
 
-#include "commands/rung.h"
+#include "tests/verify/rung.h"
 
 namespace talus::rungs {
 

@@ -4,7 +4,7 @@
 /// those can balance.
 #include <algorithm>
 
-#include "commands/rung.h"
+#include "tests/verify/rung.h"
 
 namespace talus::rungs {
 

@@ -2,8 +2,8 @@
 /// Terzaghi's consolidation as in ../terzaghi, at 1e-9 m/s: T = 1 is 11.6 days. Water of 2.2 GPa takes its storage into
 /// c_v and p_0. The settlement is that of the skeleton's share of the load: H / E_c (q - mean p) after the load, whose
 /// undrained part is (q - p_0) H / E_c.
-#include "commands/rung.h"
 #include "tests/verification/terzaghi/exact.h"
+#include "tests/verify/rung.h"
 
 namespace talus::rungs {
 

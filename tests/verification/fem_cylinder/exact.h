@@ -6,7 +6,7 @@
 ///     p_c = Y (m - 1) / [(m - 1) + N (m + 1)], m = b^2 / c^2;  u(b) = 2 (1 - nu^2) p_c b / [E (m - 1)].
 #include <cmath>
 
-#include "commands/rung.h"
+#include "tests/verify/rung.h"
 
 namespace talus::rungs {
 

@@ -2,7 +2,7 @@
 /// Elastic slope under gravity: no closed form. The finer mesh stands for the exact answer of the coarser one, plane
 /// strain for that of a slice of tetrahedra. The mean settlement, over the mass, is the work of the weight: the
 /// discrete one is never above the exact one.
-#include "commands/rung.h"
+#include "tests/verify/rung.h"
 
 namespace talus::rungs {
 

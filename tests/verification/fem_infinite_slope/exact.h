@@ -8,7 +8,7 @@
 /// plane has its largest shear stress there (Davis 1968): tau = sigma_n sin phi_F + c_F cos phi_F, which is less.
 #include <cmath>
 
-#include "commands/rung.h"
+#include "tests/verify/rung.h"
 
 namespace talus::rungs {
 

@@ -4,7 +4,7 @@
 /// cosine of the reduced phi, with which Spencer's method gives 1.327
 /// (docs/gallery/slope_stability/limit_equilibrium.py
 /// --davis).
-#include "commands/rung.h"
+#include "tests/verify/rung.h"
 
 namespace talus::rungs {
 

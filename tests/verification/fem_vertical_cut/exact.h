@@ -1,6 +1,6 @@
 #pragma once
 /// Vertical cut in Tresca soil: gamma H / c_u = 3.776 (bounds 3.776 and 3.7776: Pastor, Thai & Francescato 2000, 2009).
-#include "commands/rung.h"
+#include "tests/verify/rung.h"
 
 namespace talus::rungs {
 

@@ -2,7 +2,7 @@
 /// Strip footing on weightless Tresca soil: limit load per width N_c c_u, N_c = 2 + pi (Prandtl 1920), rough or smooth.
 #include <cmath>
 
-#include "commands/rung.h"
+#include "tests/verify/rung.h"
 
 namespace talus::rungs {
 

@@ -4,7 +4,7 @@
 /// lambda - 1.
 #include <cmath>
 
-#include "commands/rung.h"
+#include "tests/verify/rung.h"
 
 namespace talus::rungs {
 

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "commands/rung.h"
 #include "tests/verification/cell_means.h"
+#include "tests/verify/rung.h"
 
 namespace talus::rungs {
 

@@ -6,7 +6,7 @@
 #include <functional>
 #include <vector>
 
-#include "commands/rung.h"
+#include "tests/verify/rung.h"
 
 namespace talus::rungs {
 

@@ -2,7 +2,7 @@
 /// Element tests of an elastic soil (E = 20 MPa, nu = 0.3) and of Mohr-Coulomb soils, by `talus soil`'s own driver.
 #include <cmath>
 
-#include "commands/rung.h"
+#include "tests/verify/rung.h"
 
 namespace talus::rungs {
 

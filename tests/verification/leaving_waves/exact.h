@@ -1,7 +1,7 @@
 #pragma once
 /// Pulses that reach a non-reflecting face: straight on, dashpots of rho c_p take all of their energy; at an angle they
 /// reflect a part (Lysmer & Kuhlemeyer 1969).
-#include "commands/rung.h"
+#include "tests/verify/rung.h"
 
 namespace talus::rungs {
 

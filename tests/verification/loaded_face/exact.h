@@ -3,7 +3,7 @@
 /// face moves by H [exp(-q / E_c) - 1], and the base bears q times the width.
 #include <cmath>
 
-#include "commands/rung.h"
+#include "tests/verify/rung.h"
 
 namespace talus::rungs {
 

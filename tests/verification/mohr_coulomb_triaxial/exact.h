@@ -3,7 +3,7 @@
 /// deg + phi / 2), in plane strain and in triaxial compression alike.
 #include <cmath>
 
-#include "commands/rung.h"
+#include "tests/verify/rung.h"
 
 namespace talus::rungs {
 

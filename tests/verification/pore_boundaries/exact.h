@@ -6,8 +6,8 @@
 #include <cmath>
 #include <complex>
 
-#include "commands/rung.h"
 #include "tests/verification/cell_means.h"
+#include "tests/verify/rung.h"
 
 namespace talus::rungs {
 

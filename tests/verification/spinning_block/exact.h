@@ -2,7 +2,7 @@
 /// A block that spins freely keeps its linear and angular momentum and its centre of mass.
 #include <cmath>
 
-#include "commands/rung.h"
+#include "tests/verify/rung.h"
 
 namespace talus::rungs {
 

@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "scene/reader.h"
+#include "scene/scene.h"
 #include "simulation.h"
 #include "solvers/critical_step.h"
 

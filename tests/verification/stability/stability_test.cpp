@@ -8,6 +8,7 @@
 #include <functional>
 
 #include "scene/reader.h"
+#include "scene/scene.h"
 #include "simulation.h"
 #include "soil.h"
 #include "solvers/critical_step.h"

@@ -4,7 +4,7 @@
 /// linear problem, converged.
 #include <cmath>
 
-#include "commands/rung.h"
+#include "tests/verify/rung.h"
 
 namespace talus::rungs {
 

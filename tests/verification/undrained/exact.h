@@ -3,7 +3,7 @@
 /// do not compress.
 #include <cmath>
 
-#include "commands/rung.h"
+#include "tests/verify/rung.h"
 
 namespace talus::rungs {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "commands/rung.h"
+#include "tests/verify/rung.h"
 
 namespace talus::rungs {
 

@@ -3,7 +3,7 @@
 /// that of the effective normal stress, tan phi_b (rho g h cos beta - p).
 #include <cmath>
 
-#include "commands/rung.h"
+#include "tests/verify/rung.h"
 
 namespace talus::rungs {
 

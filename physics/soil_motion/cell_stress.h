@@ -1,0 +1,44 @@
+#pragma once
+/// Mean stress of the cells, whose divergence moves the nodes, docs/theory (3.6).
+#include <array>
+#include <vector>
+
+#include "physics/soil_motion/patch_means.h"
+#include "physics/soil_motion/soil_state.h"
+#include "scene/scene.h"
+
+namespace talus {
+
+enum class Locking;
+
+template <int dim>
+class CellStress {
+ public:
+  explicit CellStress(int cells) { make_room(mean_, cells); }
+
+  /// Means over the points of a state, weighted by their volumes, and their pressure over patches, (4.7).
+  void find(const FilledGrid<dim> &grid, const std::vector<PointSet> &points, const SoilState<dim> &state,
+            Locking locking, PatchMeans &patches);
+  /// Forces of a cell on its nodes [N].
+  std::array<Vec<dim>, dim + 1> forces(int cell, const SoilState<dim> &state) const {
+    const auto &s = mean_[cell];
+    const double w = state.weight[cell];
+    std::array<Vec<dim>, dim + 1> force{};
+    for (int k = 0; k < dim; ++k) {
+      const Vec<dim> &g = state.shape[cell].gradient[k];
+      Vec<dim> f;
+      if constexpr (dim == 2)
+        f = {w * (s[0] * g[0] + s[3] * g[1]), w * (s[3] * g[0] + s[1] * g[1])};
+      else
+        f = {w * (s[0] * g[0] + s[3] * g[1] + s[5] * g[2]), w * (s[3] * g[0] + s[1] * g[1] + s[4] * g[2]),
+             w * (s[5] * g[0] + s[4] * g[1] + s[2] * g[2])};
+      for (int d = 0; d < dim; ++d) force[k + 1][d] = -f[d], force[0][d] += f[d];
+    }
+    return force;
+  }
+
+ private:
+  std::vector<std::array<double, stress_size<dim>>> mean_;  ///< [cell] [Pa]
+};
+
+}  // namespace talus

@@ -1,0 +1,33 @@
+#pragma once
+/// [factor_of_safety]: the search for it.
+#include <vector>
+
+#include "base/units.h"
+
+namespace talus {
+
+/// Where stages of kind = "factor_of_safety", and `talus solve --factor-of-safety`, divide strength, and how many
+/// mechanisms they search for.
+struct FactorSource {
+  std::vector<std::vector<double>> within;  ///< polygon x, elevation [m]; empty: everywhere
+  std::vector<std::vector<double>> along;   ///< line x, elevation [m]; empty: everywhere
+  double width = 0;                         ///< of the band along the line [m]; 0: two cells
+  int mechanisms = 1;
+  template <class Visitor>
+  void fields(Visitor &&v) {
+    v.points(
+        "within", within, metre,
+        "polygon of points [x, elevation] to which the search is confined: strength is divided inside it, elsewhere "
+        "soil keeps its strength; in 3D across its whole width");
+    v.points(
+        "along", along, metre,
+        "line of points [x, elevation] along which soil may slip: strength is divided in a band on it, elsewhere soil "
+        "keeps its strength; in 3D across its whole width");
+    v.number("width", width, metre, Range{0, 1e5}, "width of the band on the line `along`; 0: two cells");
+    v.integer("mechanisms", mechanisms, Range{1, 10},
+              "number of mechanisms that are searched for: the one with the least factor, then those with the next "
+              "larger factors that move other soil");
+  }
+};
+
+}  // namespace talus
