@@ -32,6 +32,9 @@ void doubt_stages(const Scene &scene, Doubts &doubts) {
                                   flowed + " has brought is undone");
     if (stage.water_flows()) flowed = stage.name;
   }
+  const auto shakes = [](const Stage &stage) { return stage.shakes(); };
+  if (!scene.earthquake.empty() && std::ranges::none_of(scene.stage, shakes))
+    doubts.say("idle_earthquake", "no stage has earthquake = true: the motion of [[earthquake]] acts in none");
   for (const EarthquakeSource &component : scene.earthquake)
     if (const std::string sentence = drift_of(read_motion(component)); !sentence.empty()) doubts.say("drift", sentence);
   for (const ChangingLoad &load : changing_loads(scene)) {

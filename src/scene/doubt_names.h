@@ -21,7 +21,7 @@ inline constexpr std::string_view doubt_names =
     " tension_cutoff thermal_conductivity thermal_pressurisation thickness tolerance unit_weight velocity_tolerance"
     " viscosity void_ratio volume_cap yield_stress young_modulus brittle cavitation changing_table coarse_cells"
     " drift dry_boundary dry_pond early_suction excess_alone faces_left film flooding free_base free_side gravity_ramp"
-    " lasting_rain late_load mesh_end mesh_units nodal_locking open_water plastic_strain pond pore_flow"
+    " idle_earthquake lasting_rain late_load mesh_end mesh_units nodal_locking open_water plastic_strain pond pore_flow"
     " pore_volume_cap relative_permeability sealed_ground soft_water steep_face stiffness strength thin_body"
     " undrained_stage undrained_strength void water_table ";
 

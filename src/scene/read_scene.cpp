@@ -65,9 +65,6 @@ class Checks {
   }
 
   void ground_motion() const {
-    const auto shakes = [](const Stage &stage) { return stage.shakes(); };
-    if (!scene_.earthquake.empty() && std::ranges::none_of(scene_.stage, shakes))
-      reader_.complain("earthquake", "has no effect: set earthquake = true in a stage of motion");
     for (std::size_t i = 0; i < scene_.earthquake.size(); ++i) {
       const std::vector<double> &direction = scene_.earthquake[i].direction;
       const std::string path = "earthquake." + std::to_string(i) + ".direction";

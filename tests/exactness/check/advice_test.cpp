@@ -41,6 +41,13 @@ const Case cases[] = {
      {"stage.0.until=failure", "stage.0.failure_point=toe", "output.point.toe.position=[1, 0]",
       "stage.0.failure_time=0.1"},
      "stage.fall.failure_time = 0.1 s is longer than the stage"},
+    {"earthquake_that_no_stage_has",
+     {"earthquake=[{kind='ricker', amplitude=1, frequency=2}]"},
+     "no stage has earthquake = true"},
+    {"earthquake_that_drifts",
+     {"earthquake=[{kind='sine', amplitude=1, frequency=2, duration=0.25}]", "stage.0.earthquake=true",
+      "stage.0.duration=1"},
+     "the record leaves the ground with"},
     {"dry", {}, "is right for soil without water"},
 };
 
