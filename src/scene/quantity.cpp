@@ -281,6 +281,10 @@ Quantity parse_quantity(std::string_view text) {
 double in_unit(std::string_view text, const Unit &unit) {
   const Quantity quantity = parse_quantity(text);
   if (quantity.plain) return quantity.number;
+  constexpr Dimension gram{1, 0, 0}, acceleration{0, 1, -2};
+  constexpr double standard_gravity = 9.80665;                                              // [m/s2]
+  if (unit.dimension == acceleration && quantity.dimension == gram && quantity.si == 1e-3)  // "0.3 g"
+    return quantity.number * standard_gravity / unit.si;
   if (!(quantity.dimension == unit.dimension)) {
     const std::string why = hint(unit.dimension, quantity.dimension);
     if (!why.empty()) throw std::invalid_argument(why);

@@ -45,6 +45,7 @@ TEST(Quantity, ReadsEveryUsualSpellingOfAUnit) {
       {"36 km/h", metre_per_second, 10},
       {"1 cm/min", metre_per_second, 1e-2 / 60},
       {"9.81 m/s2", metre_per_second_squared, 9.81},
+      {"0.3 g", metre_per_second_squared, 0.3 * 9.80665},
       {"9.81 m/s/s", metre_per_second_squared, 9.81},
       {"2650 kg/m3", kilogram_per_cubic_metre, 2650},
       {"2.65 g/cm3", kilogram_per_cubic_metre, 2650},
