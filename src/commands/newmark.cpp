@@ -60,7 +60,7 @@ class YieldSearch {
     QuasiStaticKeys keys;
     keys.when_lost = WhenLost::go_on;
     Stage inertia;
-    inertia.name = "inertia", inertia.kind = keys, inertia.duration = 1;
+    inertia.name = "inertia", inertia.kind = keys, inertia.duration = 1, inertia.softening = false;
     scene_.stage.push_back(inertia);
     scene_.add_factor_stage();
   }

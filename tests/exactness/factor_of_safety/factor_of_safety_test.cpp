@@ -421,7 +421,7 @@ TEST(FactorOfSafety, ends_when_interrupted) {
   make_simulation(PETSC_COMM_WORLD, scene, options)->run();
   scene.add_factor_stage();
   options.resume = true;
-  const auto resumed = make_simulation(PETSC_COMM_WORLD, scene, options);
+  auto resumed = make_simulation(PETSC_COMM_WORLD, scene, options);
   interrupted = 1;
   EXPECT_THROW(search("scene.toml", coarse), RunError);
   EXPECT_THROW(resumed->run(), RunError);
@@ -429,6 +429,7 @@ TEST(FactorOfSafety, ends_when_interrupted) {
   int trials = 0;
   for (const Event &event : resumed->events()) trials += event.kind == std::string(event::strength_trial);
   EXPECT_EQ(trials, 0);
+  resumed.reset();  // which leaves the folder to the next run
   const auto again = make_simulation(PETSC_COMM_WORLD, scene, options);
   again->run();
   EXPECT_NEAR(again->factor_of_safety().value(), search("scene.toml", coarse).value(), 1e-9);
