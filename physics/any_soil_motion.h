@@ -27,13 +27,13 @@ struct Scene;
 /// Loading of the soil, set by the time loop before each step and read by the motion.
 template <int dim>
 struct Loading {
-  Vec<dim> gravity{};     ///< once the ramp of the stage is over [m/s2]
+  Vec<dim> gravity{};                      ///< once the ramp of the stage is over [m/s2]
   const GroundShaking *shaking = nullptr;  ///< of the ground; null: it is at rest
   double shaken_since = 0;                 ///< time of the run at which the motion begins [s]
   bool in_frame_of_base = false;           ///< the soil is computed in the frame of the base, which shakes whole; else
                                            ///< the motion comes in as a wave
-  double ramp = 1;        ///< of the stage: gravity and with it pore pressure grow from 0 to 1
-  double time = 0;        ///< load time: the t of the scene's functions [s]
+  double ramp = 1;                         ///< of the stage: gravity and with it pore pressure grow from 0 to 1
+  double time = 0;                         ///< load time: the t of the scene's functions [s]
   double set_at = 0;      ///< time of the run at which ramp and load time have these values [s], and their rates:
   double ramp_rate = 0;   ///< [1/s]
   double time_rate = 1;   ///< 0 in a stage that holds loads

@@ -53,7 +53,7 @@ struct Scene {
   Boxed<Gas> gas;
   std::vector<Stage> stage;
   std::vector<EarthquakeSource> earthquake;  ///< components of the motion of the ground
-  DeferredTable integrator;  ///< [integrator], read by solvers/
+  DeferredTable integrator;                  ///< [integrator], read by solvers/
   Boxed<Transfer> transfer;
   Boxed<QuasiStaticSource> quasi_static;
   Boxed<FactorSource> factor_of_safety;

@@ -74,8 +74,8 @@ void World<dim>::set_loading(const Stage &stage, double stage_time, const Clock 
   motion->loading.damping = stage.damping();
   motion->loading.shaking = stage.shakes() ? &shaking : nullptr;
   motion->loading.shaken_since = clock.time - stage_time;
-  motion->loading.in_frame_of_base = std::ranges::none_of(
-      conditions.sources(), [](const Source &source) { return source.kind.incoming_wave; });
+  motion->loading.in_frame_of_base =
+      std::ranges::none_of(conditions.sources(), [](const Source &source) { return source.kind.incoming_wave; });
   motion->loading.softening = stage.softening;
   conditions.bases().remember_slip(stage.softening);
   motion->loading.pore_flow = stage.pore_flow;

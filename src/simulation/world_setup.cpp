@@ -22,7 +22,12 @@ namespace talus {
 
 template <int dim>
 World<dim>::World(MPI_Comm world, const Scene &of, DM plex, const std::string &mesh_file, const Cuts &cuts)
-    : scene(of), phases(phase_traits(of.phases)), comm(world), pressure(of), shaking(of.earthquake), rates_(*of.transfer) {
+    : scene(of),
+      phases(phase_traits(of.phases)),
+      comm(world),
+      pressure(of),
+      shaking(of.earthquake),
+      rates_(*of.transfer) {
   read_laws();
   std::vector<Source> sources = read_sources();
   read_mesh(plex, mesh_file, cuts);
