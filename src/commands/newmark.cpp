@@ -67,7 +67,7 @@ class YieldSearch {
 
   /// `direction`: 1, -1, or 0 for the one in which the slope is weaker.
   Yielding find(int direction) {
-    constexpr double first = 0.1, enough = 0.003;  // coefficient; factor
+    constexpr double first = 0.1, enough = 0.02;  // coefficient; factor
     constexpr int most = 10;
     const double still = factor_at(0, 1);
     if (still <= 1)
@@ -81,26 +81,26 @@ class YieldSearch {
       if (other >= factor) last_ = one_way;
       factor = std::min(factor, other);
     }
-    // 1 / F is nearly linear in the coefficient
-    double low = 0, at_low = 1 / still, high = first, at_high = 1 / factor;
-    for (int n = 0; std::abs(factor - 1) > enough; ++n) {
+    // 1 / F is nearly linear in the coefficient: the last piece to F = 1 is found by that line
+    double low = 0, at_low = 1 / still, high = first, at_high = 1 / factor, yield = 0;
+    for (int n = 0;; ++n) {
+      yield = low + (1 - at_low) / (at_high - at_low) * (high - low);
+      if (!(yield > 0) || yield > 3)
+        throw std::runtime_error(
+            "the slope has no yield coefficient up to 3: its factor falls too little with the inertia");
+      if (std::abs(factor - 1) <= enough) break;
       if (n == most)
         throw std::runtime_error("the search for the yield coefficient does not end between " + rounded(low) + " and " +
                                  rounded(high));
-      const double k = low + (1 - at_low) / (at_high - at_low) * (high - low);
-      if (!(k > 0) || k > 3)
-        throw std::runtime_error(
-            "the slope has no yield coefficient up to 3: its factor falls too little with the inertia");
-      factor = factor_at(k, direction);
-      if (std::abs(1 / factor - at_low) < 1e-12) break;
+      factor = factor_at(yield, direction);
       // the two that lie closest to 1
       if (std::abs(at_low - 1) > std::abs(at_high - 1))
-        low = k, at_low = 1 / factor;
+        low = yield, at_low = 1 / factor;
       else
-        high = k, at_high = 1 / factor;
+        high = yield, at_high = 1 / factor;
     }
     Yielding found;
-    found.coefficient = coefficient_, found.direction = direction, found.mechanism = last_;
+    found.coefficient = yield, found.direction = direction, found.mechanism = last_;
     const int up = scene_.vertical();
     found.height = last_.high[up] - last_.low[up];
     found.shear_wave_speed = shear_wave_speed_;
@@ -124,7 +124,6 @@ class YieldSearch {
     for (std::size_t b = 0; b < bodies.size(); ++b)
       stiffness += bodies[b].volume * shear_modulus(read_law(scene_.body[b].law)), mass += bodies[b].mass;
     shear_wave_speed_ = std::sqrt(stiffness / mass);
-    coefficient_ = coefficient;
     trials_.push_back({direction * coefficient, last_.value()});
     std::fprintf(stderr, "coefficient %.4f: factor of safety %.3f\n", direction * coefficient, last_.value());
     return last_.value();
@@ -132,7 +131,7 @@ class YieldSearch {
 
   Scene scene_;
   FactorOfSafety last_;
-  double coefficient_ = 0, shear_wave_speed_ = 0;
+  double shear_wave_speed_ = 0;
   std::vector<std::array<double, 2>> trials_;
 };
 
