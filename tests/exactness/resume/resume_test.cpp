@@ -48,6 +48,9 @@ const std::vector<std::string> heated_base{
     "boundary.base.storage=1e-8",         "boundary.base.thermal_pressurisation=1e5",
     "boundary.base.heat_capacity=1e6"};
 
+const std::vector<std::string> shaken{
+    "earthquake=[{kind='kanai_tajimi', amplitude=5, duration=10, rise=0.01, strong=9}]", "stage.fall.earthquake=true"};
+
 const Variant variants[] = {
     {"dry", {}},
     {"dry_when_killed", {}, 1, SIGKILL},
@@ -89,6 +92,13 @@ const Variant variants[] = {
      {"mesh.size=0.2", "mesh.halvings=1", "mesh.balance_ranks=always"},
      2,
      SIGKILL},
+    {"in_an_earthquake_on_two_ranks", shaken, 2, SIGKILL},
+    {"in_a_wave_that_comes_in",
+     [] {
+       std::vector<std::string> set = shaken;
+       set.insert(set.end(), {"boundary.left.kind=non_reflecting", "boundary.left.incoming_wave=true"});
+       return set;
+     }()},
     {"with_a_fixed_step", {"integrator.step=2e-4"}},
     {"by_arkode", {"integrator.kind=arkode"}, 1, SIGKILL},
     {"by_arkode_with_moving_water", with_pores({"phases=unsaturated", "integrator.kind=arkode"})},
