@@ -66,9 +66,10 @@ PetscErrorCode Conditions<dim>::begin(FilledGrid<dim> &grid, const std::vector<s
     if (!stand_ins_ && grid.find_node(r.node) >= 0)
       active_frozen_.push_back({grid.find_node(r.node), r.source, r.value});
   PetscCall(bases_.begin(grid, filling));
-  if (!dashpots_.empty() && !stand_ins_) {
+  if (!dashpots_.empty()) {
     constexpr int width = dim * dim;
     for (const auto &[source, facets] : dashpots_) {
+      if (stand_ins_ && sources_[source].kind.stands_in()) continue;
       const auto &dashpot = sources_[source].kind.template on_soil<dim>().dashpot;
       zeros_with_room(nodal_, static_cast<size_t>(nodes) * width);
       for (const Facet<dim> &f : facets) {

@@ -55,7 +55,7 @@ double PoreFluid<dim, Phases>::prescribed_pressure(const Vec<dim> &x, double t) 
   if constexpr (Phases::suction)
     if (!pressure_.below_table(x, t, common_water))
       p -= scene_.water->suction.given() ? scene_.water->suction(x[0], x[1], dim == 3 ? x[dim - 1] : 0, t)
-                                        : pressure_.above_table(x, t);
+                                         : pressure_.above_table(x, t);
   return p;
 }
 

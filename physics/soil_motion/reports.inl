@@ -155,8 +155,7 @@ SofteningInput SoilMotion<dim, Phases>::softened_by(int b, int i) const {
   const PointSet &points = points_[b];
   const int q = transfer_.average_stress ? points.find(p.cell[i]) : i;
   found.plastic_strain = points.history[q * count + field];
-  if (softening_.averages(b))
-    found.plastic_strain += softening_.excess(b, q), found.size = 2 * body.averaging_length();
+  if (softening_.averages(b)) found.plastic_strain += softening_.excess(b, q), found.size = 2 * body.averaging_length();
   return found;
 }
 

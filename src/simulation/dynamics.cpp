@@ -194,8 +194,9 @@ void Dynamics<dim>::refuse_obstacle() {
   const bool mine = component >= 0;
   const Vec<dim> where = mine ? grid.position[component / dim % grid.node_count()] : Vec<dim>{};
   const std::string particle = text_of_first(world_.comm, mine, mine ? world_.nearest_particle(where) : "");
-  throw RunFailure(cause + "; it is largest near " + place_of_first<dim>(world_.comm, mine, where) + ", at " +
-                   particle);
+  throw RunFailure(particle.empty() ? cause
+                                    : cause + "; it is largest near " + place_of_first<dim>(world_.comm, mine, where) +
+                                          ", at " + particle);
 }
 
 template <int dim>
@@ -221,8 +222,7 @@ Verdict Dynamics<dim>::agree() {
   work_of_rank_ = mine[8], balancing_.step(all[8]);
   if (watch && all[5] == elsewhere)
     throw RunFailure(
-        "the particle that this stage watches for failure has left the mesh; watch another place (failure_point), or "
-        "end the stage by its duration");
+        "the particle that this stage watches has left the mesh; watch another place, or end the stage by its duration");
   const Verdict verdict{all[0], all[1], {all[5], all[6], all[7]}, all[2] > 0, all[3] > 0, all[4] > 0};
   shrink_ = 1 / verdict.shrink;
   const double interval = world_.scene.transfer->remap_interval;

@@ -40,7 +40,8 @@ class Sheet:
         self.boundaries = [(one, textwrap.wrap(one.line(), 78)) for one in model.boundaries]
         self.stages = []
         for name, kind, longest, end, acting in stage_rows(model)[1:]:
-            lasts = longest if end == "duration" else f"at most {longest}, ends with {end}"
+            at_most = f"at most {longest}, " if longest != "-" else ""
+            lasts = longest if end == "duration" else f"{at_most}ends with {end}"
             self.stages.append((name, textwrap.wrap(f"{kind}, {lasts}: {acting}", 150)))
         left = sum(1 + len(lines) for _, _, lines in self.soils) + 2 * bool(self.water) + len(self.water)
         legend = 1.5 + max(left, sum(len(lines) for _, lines in self.boundaries))

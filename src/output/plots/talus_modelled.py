@@ -157,11 +157,14 @@ def stage_rows(model):
     rows = [("stage", "kind", "at most", "ends with", "what acts")]
     for number, stage in enumerate(model.stages):
         kind = words(stage["kind"]) + (f", {stage['integrator']}" if stage["kind"] == "dynamic" else ", steady" if stage.get("steady") else "")
-        rows.append((stage["name"], kind, duration(stage["duration"]), ending(stage), "; ".join(actions(model, number))))
+        lasts = duration(stage["duration"]) if "duration" in stage else "-"
+        rows.append((stage["name"], kind, lasts, ending(stage), "; ".join(actions(model, number))))
     return rows
 
 
 def ending(stage):
+    if stage["kind"] == "factor_of_safety":
+        return "a bracket of the factor"
     until = stage.get("until", "duration")
     if stage.get("when_lost") == "next_stage":
         return "duration, or loss of equilibrium"
@@ -180,6 +183,8 @@ def actions(model, number):
         said.append(f"gravity {quantity(size, 'm/s2')}" + (f", growing from 0 in {duration(stage['gravity_ramp'])}" if stage.get("gravity_ramp") else ""))
     if stage.get("seismic_coefficient"):
         said.append(f"pseudo-static inertia of ({', '.join(f'{k:g}' for k in stage['seismic_coefficient'])}) times the weight")
+    if stage.get("earthquake"):
+        said.append("the earthquake")
     phases = model.data["phases"]
     if phases == "drained":
         seeped = any(before["kind"] in SEEPING for before in model.stages[:number])
@@ -193,6 +198,8 @@ def actions(model, number):
         said.append("changing with time: " + ", ".join(words(one.replace(".", " ")) for one in stage["changes"]))
     elif stage.get("hold_loads"):
         said.append("functions of time stand still")
+    if stage["kind"] == "factor_of_safety":
+        said.append("strength divided by trial factors")
     if stage.get("initial_stress") == "k0":
         said.append("stress at the start by k0")
     for key, verb in (("add", "adds"), ("remove", "removes")):

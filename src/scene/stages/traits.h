@@ -1,5 +1,5 @@
 #pragma once
-/// What the program asks of a kind of stage and of a stop criterion; it never asks for one by its name.
+/// What the time loop and the solvers ask of a kind of stage and of a stop criterion, not for one by its name.
 
 namespace talus {
 

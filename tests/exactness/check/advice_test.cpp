@@ -13,7 +13,7 @@ struct Case {
 void PrintTo(const Case &one, std::ostream *out) { *out << one.name; }
 
 const Case cases[] = {
-    {"one_particle", {"body.sand.particles_per_cell=1"}, "particles_per_cell = 1 in body.sand; usual 3 to 64"},
+    {"one_particle", {"body.sand.particles_per_cell=1"}, "particles_per_cell = 1 in body sand; usual 3 to 64"},
     {"softening",
      {"body.sand.residual_friction_angle=20", "body.sand.shape_factor=10"},
      "softens without a reference_size"},

@@ -163,7 +163,7 @@ TEST_F(Leaving, PointsThatHaveLeftHaveNoValues) {
                              point + std::vector<std::string>{"stage.0.until=failure", "stage.0.failure_point=front",
                                                               "stage.0.failure_speed=1000"});
   EXPECT_EQ(watched.status, 1);
-  EXPECT_TRUE(watched.says("watches for failure has left the mesh")) << watched.output;
+  EXPECT_TRUE(watched.says("watches has left the mesh")) << watched.output;
 }
 
 /// A run from which nothing leaves has no ledger, and a run that replaces another does not keep its ledger.

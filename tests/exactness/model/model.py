@@ -235,6 +235,13 @@ class Variants(unittest.TestCase):
         self.assertIn("adds sand", stage_rows(model)[1][-1])
         self.assertEqual([one.line() for one in model.boundaries if one.name == "top"], ["top: load, changes with time"])
 
+    def test_a_factor_of_safety_is_a_stage_without_a_duration(self):
+        stages = "stage=[{name='rests', kind='quasi_static', duration=1}, {name='factor', kind='factor_of_safety'}]"
+        rows = stage_rows(Model(self.folder.model(stages, "boundary.base={kind='fixed'}", "body.sand.residual_friction_angle=30",
+                                            "body.sand.cohesion=5 kPa")))
+        self.assertEqual(rows[2][1:4], ("factor of safety", "-", "a bracket of the factor"))
+        self.assertIn("strength divided by trial factors", rows[2][-1])
+
     def test_water_that_has_seeped_stays(self):
         stages = "stage=[{name='seeps', kind='seepage', duration=1, steady=true}, {name='moves', duration=0.001}]"
         rows = stage_rows(Model(self.folder.model(stages, "boundary.behind={kind='head', group='left', level=0.4}", RELATIVE)))

@@ -14,7 +14,8 @@ inline void fem_slope(Rung &rung) {
   };
   rung.compare("psi = phi, factor of safety", 1.38, factor({}), 0.03, 1);
   const FactorOfSafety flat = rung.factor_of_safety({"body.soil.dilation_angle=0"});
-  rung.compare("psi = 0, factor of safety", 1.40, flat.value(), 0.05, 1);
+  // trials with more are undecided up to 1.41: where the bracket ends between them depends on round-off
+  rung.compare("psi = 0, largest factor with an equilibrium", 1.40, flat.lower, 0.05, 1);
   rung.compare("psi = 0, lower estimate by Davis", 1.327, flat.by_flow.at(TrialFlow::davis).value(), 0.04, 1);
   if (rung.longer()) rung.compare("psi = phi, cells of 0.6 m", 1.38, factor({"mesh.size=0.6"}), 0.03, 1);
 }

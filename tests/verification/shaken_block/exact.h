@@ -30,7 +30,7 @@ inline void shaken_block(Rung &rung) {
       record = "{kind = 'kanai_tajimi', amplitude = 5, duration = 10, rise = 1, strong = 5}";
   for (const Case &one :
        {Case{"level, sweep", 0, 20, strong, 4, 2}, Case{"20 deg, sine", 20, 30, sine, 4, 2},
-        Case{"20 deg, record", 20, 30, record, 10.5, 2}, Case{"20 deg, record, 3D", 20, 30, record, 10.5, 3}}) {
+        Case{"20 deg, record", 20, 30, record, 10.5, 2}, Case{"20 deg, sine, 3D", 20, 30, sine, 4, 3}}) {
     const double beta = one.slope * degree, normal = g * std::cos(beta), along = g * std::sin(beta);
     const std::string down = number(-normal), weight = "\"-2000 * " + number(normal) + " * (0.5 - y)\"";
     const bool solid = one.dimension == 3;
