@@ -222,7 +222,8 @@ Verdict Dynamics<dim>::agree() {
   work_of_rank_ = mine[8], balancing_.step(all[8]);
   if (watch && all[5] == elsewhere)
     throw RunFailure(
-        "the particle that this stage watches has left the mesh; watch another place, or end the stage by its duration");
+        "the particle that this stage watches has left the mesh; watch another place, or end the stage by its "
+        "duration");
   const Verdict verdict{all[0], all[1], {all[5], all[6], all[7]}, all[2] > 0, all[3] > 0, all[4] > 0};
   shrink_ = 1 / verdict.shrink;
   const double interval = world_.scene.transfer->remap_interval;
