@@ -289,15 +289,15 @@ std::vector<std::string> MeshEnds<dim>::sentences(const Soil &soil, bool mechani
   const std::string what = mechanism ? "mechanism" : "slide";
   const auto percent = [](double share) { return rounded(100 * share) + " %"; };
   for (const Reached &end : reached(soil, mechanism))
-    all.push_back((end.cuts ? "the end of the mesh " + end.place + " cuts the " + what +
-                                  " off: soil that lay there has moved by " +
-                                  (mechanism ? "" : rounded(end.moved) + " m, ") + percent(end.moved / end.of) +
-                                  " of the largest displacement"
-                            : "the " + what + " reaches the " + (end.below ? "fixed bottom" : "end") + " of the mesh " +
-                                  end.place + ": soil within " + rounded(end.within) + " m of it shears by " +
-                                  percent(end.strain / end.mean) + " of the mean of what shears") +
-                  ", so that the " + (mechanism ? "factor of safety" : "load at failure and the run-out") +
-                  " depend on where the mesh ends. " + end.advice + " [mesh_end]");
+    all.push_back(
+        (end.cuts ? "the end of the mesh " + end.place + " cuts the " + what +
+                        " off: soil that lay there has moved by " + (mechanism ? "" : rounded(end.moved) + " m, ") +
+                        percent(end.moved / end.of) + " of the largest displacement"
+                  : "the " + what + " reaches the " + (end.below ? "fixed bottom" : "end") + " of the mesh " +
+                        end.place + ": soil within " + rounded(end.within) + " m of it shears by " +
+                        percent(end.strain / end.mean) + " of the mean of what shears") +
+        ", so that the " + (mechanism ? "factor of safety depends" : "load at failure and the run-out depend") +
+        " on where the mesh ends. " + end.advice + " [mesh_end]");
   return all;
 }
 

@@ -8,12 +8,12 @@
 #include <map>
 #include <utility>
 
-#include "base/temporary_folder.h"
 #include "scene/reader.h"
 #include "scene/scene.h"
 #include "simulation.h"
 #include "solvers/quasi_static/bracket.h"
 #include "solvers/quasi_static/trial_strength.h"
+#include "tests/unit/output/fixtures.h"
 
 namespace talus {
 namespace {
@@ -413,11 +413,10 @@ TEST(FactorOfSafety, of_steep_friction_without_dilation_is_that_of_its_own_flow)
 /// A signal ends the search, in a stage or in the first trial after the stages. The run goes on from there to the same
 /// factor.
 TEST(FactorOfSafety, ends_when_interrupted) {
-  TemporaryFolder folder;
-  ASSERT_TRUE(folder.make());
+  const SharedFolder folder;
   Scene scene = read_scene(std::string(TALUS_SLOPES) + "/scene.toml", coarse);
   RunOptions options;
-  options.pictures = options.screen = false, options.directory = folder.path() + "/run";
+  options.pictures = options.screen = false, options.directory = folder / "run";
   make_simulation(PETSC_COMM_WORLD, scene, options)->run();
   scene.add_factor_stage();
   options.resume = true;
