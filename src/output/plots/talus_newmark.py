@@ -2,11 +2,9 @@
 
 import talus_interrupt  # noqa: F401  before all that takes time
 
-import argparse
 import json
-import pathlib
 
-from talus_record import G, read
+from talus_record import G, main, read
 from talus_style import LINES, headline, plt, save
 
 
@@ -27,13 +25,5 @@ def draw(folder, names):
     return save(figure, folder / "newmark.png")
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("dir", type=pathlib.Path)
-    parser.add_argument("names", nargs="+")
-    arguments = parser.parse_args()
-    draw(arguments.dir, arguments.names)
-
-
 if __name__ == "__main__":
-    main()
+    main(__doc__, draw)

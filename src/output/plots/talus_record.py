@@ -50,8 +50,9 @@ def draw(folder, names):
     return save(figure, folder / "record.png")
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__)
+def main(description, draw):
+    """Draws what the arguments say: a folder, and the names of its records."""
+    parser = argparse.ArgumentParser(description=description)
     parser.add_argument("dir", type=pathlib.Path)
     parser.add_argument("names", nargs="+")
     arguments = parser.parse_args()
@@ -59,4 +60,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    main(__doc__, draw)
