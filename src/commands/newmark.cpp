@@ -141,7 +141,7 @@ struct Slid {
   GroundMotion motion;  ///< positive along x
   Intensity intensity;
   std::vector<double> way, reversed;         ///< downhill, also of the reversed motion [m]
-  double both_ways = 0;                      ///< the larger of both polarities where the block may slip uphill too [m]
+  double level_ground = 0;                   ///< the larger of both polarities, with one yield both ways [m]
   double decoupled = 0;                      ///< the larger of both, under the mean acceleration of a layer [m]
   Estimate ratio, with_magnitude, of_arias;  ///< Jibson (2007)
   BrayMacedo bray;
@@ -161,7 +161,7 @@ Slid slide(const std::string &name, const GroundMotion &motion, const Yielding &
   const GroundMotion uphill = times(motion, -slope.direction), downhill = times(motion, slope.direction);
   one.way = sliding_block(uphill, yield), one.reversed = sliding_block(downhill, yield);
   for (const GroundMotion &of : {uphill, downhill}) {
-    one.both_ways = std::max(one.both_ways, std::abs(sliding_block(of, yield, yield).back()));
+    one.level_ground = std::max(one.level_ground, std::abs(sliding_block(of, yield, yield).back()));
     one.decoupled = std::max(one.decoupled, sliding_block(layer_response(of, period, damping), yield).back());
   }
   const double peak = one.intensity.peak_acceleration;
@@ -198,8 +198,9 @@ void print(const Yielding &slope, const std::vector<Slid> &all, double magnitude
                 one.intensity.arias);
     std::printf("  rigid block              %8.3g cm, reversed motion %.3g cm\n", 100 * one.way.back(),
                 100 * one.reversed.back());
-    std::printf("  that slips uphill too    %8.3g cm\n  decoupled from the layer %8.3g cm\n", 100 * one.both_ways,
-                100 * one.decoupled);
+    std::printf("  as on level ground       %8.3g cm, with the same yield coefficient both ways\n",
+                100 * one.level_ground);
+    std::printf("  decoupled from the layer %8.3g cm\n", 100 * one.decoupled);
     if (one.ratio.median > 0)
       std::printf("  Jibson (2007)            a_c/a_max %s; Arias %s%s%s\n", in_centimetres(one.ratio).c_str(),
                   in_centimetres(one.of_arias).c_str(), magnitude > 0 ? "; magnitude " : "",
@@ -225,7 +226,7 @@ nlohmann::ordered_json json_of(const Yielding &slope, const std::vector<std::arr
                                    {"arias_m_s", one.intensity.arias},
                                    {"rigid_block_m", one.way.back()},
                                    {"reversed_m", one.reversed.back()},
-                                   {"both_ways_m", one.both_ways},
+                                   {"level_ground_m", one.level_ground},
                                    {"decoupled_m", one.decoupled},
                                    {"jibson_2007_ratio_m", one.ratio.median},
                                    {"jibson_2007_magnitude_m", one.with_magnitude.median},
