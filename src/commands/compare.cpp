@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <map>
 #include <optional>
 
@@ -29,30 +30,21 @@ void add_series(Sweep &sweep, const Scene &scene, const std::string &text) {
   }
 }
 
-/// Values of each key as tables and charts have them: numbers in the unit of the first of them, so that "0.01 MPa"
-/// after "4 kPa" becomes 10 kPa, or all of them as they were typed where one is an expression, a list or a word.
-void share_units(std::vector<Trial> &trials) {
-  std::map<std::string, std::vector<Trial *>> of_keys;
-  for (Trial &trial : trials) of_keys[trial.columns["key"]].push_back(&trial);
-  for (auto &[key, runs] : of_keys) {
-    const std::string own = unit_of_key(key);
-    for (Trial *run : runs) run->columns["unit"] = own;
-    std::vector<double> numbers;
-    std::string unit;
-    try {
-      for (const Trial *run : runs) {
-        const Typed value = typed(run->columns["value"]);
-        const std::string behind = value.unit.empty() ? own : value.unit;
-        if (numbers.empty()) unit = behind;
-        parse_quantity(run->columns["value"].get<std::string>());  // throws unless it is a number
-        const auto si = [](const std::string &name) { return name.empty() ? 1 : parse_quantity("1 " + name).si; };
-        numbers.push_back(behind == unit ? value.number : value.number * si(behind) / si(unit));
-      }
-    } catch (const std::invalid_argument &) {
-      continue;
-    }
-    for (std::size_t i = 0; i < runs.size(); ++i)
-      runs[i]->columns["value"] = numbers[i], runs[i]->columns["unit"] = unit;
+/// Values of each key as charts have them: numbers in the one unit that they have, or all of them as they were typed
+/// where one is an expression, a list or a word. Throws SceneError where numbers have different units.
+void read_values(std::vector<Trial> &trials) {
+  std::map<std::string, std::vector<std::string>> of_keys;
+  for (const Trial &trial : trials) of_keys[trial.columns["key"]].push_back(trial.columns["value"]);
+  for (const auto &[key, values] : of_keys)
+    if (const std::string wrong = mixed_units(values); !wrong.empty())
+      throw SceneError("--series: " + key + " " + wrong);
+  for (Trial &trial : trials) {
+    const std::string key = trial.columns["key"], text = trial.columns["value"];
+    const bool numbers =
+        std::ranges::all_of(of_keys.at(key), [](const auto &value) { return looks_like_quantity(value); });
+    const Typed value = typed(text);
+    if (numbers) trial.columns["value"] = value.number;
+    trial.columns["unit"] = numbers && !value.unit.empty() ? value.unit : unit_of_key(key);
   }
 }
 
@@ -67,7 +59,7 @@ int compare(CompareArguments arguments) {
   if (measured) sweep.measures = {arguments.measure};
   if (arguments.exact) sweep.shown["exact"] = *arguments.exact;
   for (const std::string &text : arguments.series) add_series(sweep, scene, text);
-  share_units(sweep.trials);
+  read_values(sweep.trials);
   if (!arguments.reference.empty()) {  // it stands on no axis
     sweep.shown["reference"] = sweep.trials.size();
     add_series(sweep, scene, arguments.reference);

@@ -63,7 +63,7 @@ const std::map<std::string, Refinement (*)(const Scene &)> refinements{
 
 int converge(ConvergeArguments arguments) {
   arguments.scene = find_scene(arguments.scene);
-  const Scene scene = read_wholly(arguments.scene, arguments.set, arguments.no_umat);
+  const Scene scene = read_scene(arguments.scene, arguments.set);
   if (arguments.directory.empty()) arguments.directory = "results/converge_" + short_name(arguments.scene);
   const Refinement r = refinements.at(arguments.by)(scene);
   std::vector<double> values = arguments.values.empty() ? r.values : arguments.values;

@@ -136,11 +136,6 @@ class Study {
   }
 
   void check_outcomes() const {
-    for (const std::string &measure : file_.measures) try {
-        parse_measure(measure);
-      } catch (const SceneError &) {
-        root_.complain("measures", "must be COLUMN, COLUMN@TIME or max:COLUMN of history.csv");
-      }
     if (file_.runs == StudyRuns::factor_of_safety && !file_.measures.empty())
       root_.complain("measures", "belong to runs = \"motion\": a factor of safety has no history");
     const std::vector<std::string> known = outcome_names();

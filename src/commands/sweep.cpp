@@ -54,6 +54,18 @@ std::string state_of(const std::string &path) {
   return std::to_string(digest);
 }
 
+/// The scene with all that other rooms read of it later: laws, boundaries and the integrator. Throws SceneError where a
+/// key or a value of any of them is refused, with `no_umat` also a law that loads a library.
+Scene read_wholly(const std::string &file, const std::vector<std::string> &set, bool no_umat) {
+  Scene scene = read_scene(file, set);
+  if (no_umat) refuse_umat(scene);
+  for (const BodySource &body : scene.body) read_law(body.law);
+  for (const BoundarySource &boundary : scene.boundary) read_boundary(boundary.kind);
+  DeferredTable integrator = scene.integrator;
+  read_integrator(integrator, fluids_move(scene.phases));
+  return scene;
+}
+
 /// State of each file that the scene names, by its path: mesh, section, terrain, grids, libraries and all others of
 /// TableReader::files, with the files that belong to them. Of a folder of results that of its checkpoint. `known` are
 /// those that other scenes have named, so that each is read once.
@@ -141,8 +153,6 @@ class Runs {
   std::map<pid_t, std::pair<Trial *, Clock::time_point>> running_;  ///< and when it was started
   std::size_t next_ = 0, before_ = 0;                               ///< to be started; done before
   Clock::time_point begin_ = Clock::now();
-  std::string killed_;            ///< folder of a run that something from outside has ended
-  const Trial *waits_ = nullptr;  ///< a run of a program that was killed still writes into its folder
 };
 
 Runs::Runs(Sweep &sweep) : sweep_(sweep), trials_(sweep.trials) {
@@ -201,17 +211,16 @@ void Runs::find_done() {
     std::fprintf(stderr, "%s has changed; runs to repeat: %d\n", path.c_str(), runs);
 }
 
-/// Starts the next run that is missing. False where there is none, or somebody still writes into its folder.
+/// Starts the next run that is missing, once nobody writes into its folder any more. False where there is none.
 bool Runs::start_next() {
   while (next_ < trials_.size() && trials_[next_].done) ++next_;
   if (next_ == trials_.size()) return false;
   Trial &trial = trials_[next_];
   const std::string into = folder(trial);
   fs::create_directories(into);
-  if (!FolderLock(into).taken()) {
-    if (waits_ != &trial) std::fprintf(stderr, "waiting for the run that still writes into %s\n", into.c_str());
-    waits_ = &trial;
-    return false;
+  while (!FolderLock(into).taken()) {  // a run of a program that was killed has some seconds to end
+    if (interrupted) return false;
+    usleep(10000);
   }
   for (const char *of_a_run_before : {"/trial", "/history.csv", "/events.jsonl"}) fs::remove(into + of_a_run_before);
   std::vector<std::string> words{"talus"};
@@ -228,8 +237,7 @@ bool Runs::start_next() {
 void Runs::ended(Trial &trial, double wall, int status, const rusage &usage) {
   const bool failed = !WIFEXITED(status) || (WEXITSTATUS(status) != 0 && WEXITSTATUS(status) != undecided_status);
   if (failed && (interrupted || ended_from_outside(status))) {  // it is run again
-    if (!interrupted) std::fprintf(stderr, "%s was ended from outside\n", in_words(trial).c_str());
-    killed_ = folder(trial);
+    if (!interrupted) std::fprintf(stderr, "%s was ended from outside\n", folder(trial).c_str());
     return;
   }
   const auto seconds = [](const timeval &t) {
@@ -280,8 +288,8 @@ std::string Runs::run() {
   if (done() == trials_.size()) return "";
   if (interrupted) return "interrupted; the same command continues with the missing runs";
   return std::to_string(trials_.size() - done()) + " of " + std::to_string(trials_.size()) +
-         " runs were ended from outside, as the system does where memory does not suffice (the last is " + killed_ +
-         "); the same command repeats them, with less memory at a time by --jobs 1";
+         " runs were ended from outside, as the system does where memory does not suffice; the same command repeats "
+         "them, with less memory at a time by --jobs 1";
 }
 
 /// Hands the runs that are done over to the script that makes table, pictures and statements of them.
@@ -347,16 +355,6 @@ std::string unit_of_key(const std::string &key) {
     for (const Describer::Key &one : block.keys)
       if (!one.unit.empty() && std::ranges::equal(words, pieces(one.path, '.'), same)) return one.unit;
   return "";
-}
-
-Scene read_wholly(const std::string &file, const std::vector<std::string> &set, bool no_umat) {
-  Scene scene = read_scene(file, set);
-  if (no_umat) refuse_umat(scene);
-  for (const BodySource &body : scene.body) read_law(body.law);
-  for (const BoundarySource &boundary : scene.boundary) read_boundary(boundary.kind);
-  DeferredTable integrator = scene.integrator;
-  read_integrator(integrator, fluids_move(scene.phases));
-  return scene;
 }
 
 CLI::Option *add_sweep_options(CLI::App &command, SweepOptions &options, const std::string &meaning_of_set,

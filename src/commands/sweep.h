@@ -58,10 +58,6 @@ std::string run_name(std::size_t number);
 /// the missing runs.
 int perform(Sweep sweep);
 
-/// The scene with all that other rooms read of it later: laws, boundaries and the integrator. Throws SceneError where a
-/// key or a value of any of them is refused, with `no_umat` also a law that loads a library.
-Scene read_wholly(const std::string &file, const std::vector<std::string> &set, bool no_umat);
-
 /// What is wrong with a list of keys of a scene that take values together, as a sentence that goes on from it: two are
 /// the same key, or one lies in the table at another. Empty if nothing is.
 std::string same_keys(const Scene &scene, const std::vector<std::string> &keys);

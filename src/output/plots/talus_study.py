@@ -12,6 +12,7 @@ import talus_interrupt  # noqa: F401  before all that takes time
 
 import argparse
 import csv
+import functools
 import json
 import math
 import pathlib
@@ -24,7 +25,7 @@ import numpy as np
 import talus_style as style
 from talus_outcomes import FAILS, MOVES, STANDS, cell_size, finite, losses, outcome, write_json
 from talus_results import History, Results, read_events
-from talus_statistics import clopper_pearson, extrapolate, settles
+from talus_statistics import ORDERS, clopper_pearson, extrapolate, order_of, rest_of, settles
 from talus_style import plt
 from talus_table import folded, lines_of
 from talus_units import readable_unit, shown, with_unit, words
@@ -277,12 +278,14 @@ def sensitivities(rows, variables, outcome):
     return fit | {"r2": float(1 - np.var(y - y.mean() - (x - middle) / spread @ factors) / np.var(y)), "bars": bars}
 
 
-def tornado(fit, in_plane, beside):
-    """A panel: what each variable does to an outcome. Panels `beside` it have the same axis: the distance of their middle lines is what the case does."""
-    def panel(axes):
-        beside.append(axes)
-        if axes is not beside[0]:
-            axes.sharex(beside[0])
+def tornado(fits, in_plane):
+    """Panels: what each variable does to an outcome, a panel per case. They have the same axis: the distance of their middle lines is what the case does."""
+    drawn = []
+
+    def panel(fit, axes):
+        drawn.append(axes)
+        if axes is not drawn[0]:
+            axes.sharex(drawn[0])
         for k, bar in enumerate(fit["bars"]):
             for end, colour, label in (("low", style.LINES[0], "variable at the 10 % quantile of these runs"), ("high", style.LINES[1], "at their 90 % quantile")):
                 axes.barh(k, bar[end] - fit["mean"], left=fit["mean"], height=0.62, color=colour, label=label)
@@ -292,7 +295,7 @@ def tornado(fit, in_plane, beside):
         axes.set_xlabel(textwrap.fill(named(fit["outcome"], in_plane), 52))
         said = f"linear fit to {fit['runs']} runs, R² = {fit['r2']:.2f}" if fit["bars"] else f"no fit to {fit['runs']} runs"
         axes.set_title("\n".join(filter(None, (textwrap.fill(fit["case"], 44), said))), loc="right", fontsize=8)
-    return panel
+    return [functools.partial(panel, fit) for fit in fits]
 
 
 def exceedance(cases, outcome, criteria, confidence, in_plane):
@@ -337,7 +340,7 @@ def study(runs, design):
     pictures = {}
     if fits and len(cases) <= MANY:
         size = 6.4 if len(cases) == 1 else 4.3, 1.3 + 0.5 * max(len(fit["bars"]) for of in fits for fit in of)
-        pictures["tornado"] = "What decides", [[tornado(fit, runs.in_plane, beside) for fit in of] for of, beside in zip(fits, [[] for _ in fits])], 3, size
+        pictures["tornado"] = "What decides", [tornado(of, runs.in_plane) for of in fits], 3, size
     if vary:
         blocks = [[against(v["name"], with_unit(words(v["name"]), v["unit"]), rows, {"": outcome}, named(outcome, runs.in_plane), list(cases), False,
                            [c["limit"] for c in criteria if c["outcome"] == outcome]) for v in variables] for outcome in vary]
@@ -400,7 +403,8 @@ def chart_of_errors(rows, reference):
 
     def costs(axes):
         cost(axes)
-        axes.step(*np.transpose(sorted((row["processor_s"], row["error"]) for row in errors if row["pareto"])), where="post", color=style.INK, lw=0.8, ls=":", label="Pareto front")
+        if best := sorted((row["processor_s"], row["error"]) for row in errors if row["pareto"]):
+            axes.step(*np.transpose(best), where="post", color=style.INK, lw=0.8, ls=":", label="Pareto front")
         if 0 < uncertainty < math.inf:  # as far down as the errors go
             axes.axhspan(min(axes.get_ylim()[0], uncertainty / 2), uncertainty, color=style.FAINT, alpha=0.4, label="reference uncertain")
     blocks = []
@@ -439,8 +443,9 @@ def errors(runs, design):
 # ---- convergence ----
 
 THINGS = {"cells": "cell size", "steps": "time step", "particles": "number of particles per cell"}
-VERDICTS = {"missing": "the {thing} decides it", "equal": "the {thing} does not decide it within {within}", "settles": "it settles, and the last refinement changes it by {last}, within {within}",
-            "swings": "it swings, and the {thing} decides it", "open": "it does not settle, and the {thing} decides it"}
+VERDICTS = {"missing": "the {thing} decides it", "equal": "the {thing} does not decide it within {allowed}", "swings": "it swings, and the {thing} decides it",
+            "settles": "it settles, to {limit} by extrapolation at the order {order}, and the last refinement changes it by {last}, within {allowed}",
+            "open": "it does not settle, and the {thing} decides it"}
 
 
 def refined(row):
@@ -453,16 +458,16 @@ def percent(difference, values):
     return f"{share:.2g} %" if share >= 0.01 else "0 %"
 
 
-def said_of_quantity(key, rows, verdict, thing, within, in_plane):
+def said_of_quantity(one, rows, thing, within, in_plane):
     """A sentence on what refinement does to a quantity."""
-    name, _, unit = named(key, in_plane).partition(" [")
-    values = [row[key] for row in rows if row[key] is not None]
+    name, _, unit = named(one["quantity"], in_plane).partition(" [")
+    values = [value for value in one["values"] if value is not None]
     factor, unit = readable_unit(max(map(abs, values)), unit.rstrip("]"))
     text = f"The {name} is {factor * min(values):.3g} to {factor * max(values):.3g} {unit}, {percent(max(values) - min(values), values)} apart"
-    if verdict == "missing":
-        text += f" and missing with {', '.join(refined(row) for row in rows if row[key] is None)}"
-    allowed = f"{100 * within:g} %" + " or one cell" * (key in TO_A_CELL)
-    return f"{text}: {VERDICTS[verdict].format(thing=thing, within=allowed, last=percent(abs(values[-1] - values[-2]), values) if len(values) > 1 else '')}."
+    if one["state"] == "missing":
+        text += f" and missing with {', '.join(refined(row) for row, value in zip(rows, one['values']) if value is None)}"
+    numbers = {"limit": f"{factor * one['limit']:.3g} {unit}", "order": f"{one['order']:.2g}", "last": percent(abs(values[-1] - values[-2]), values)} if one["order"] else {}
+    return f"{text}: {VERDICTS[one['state']].format(thing=thing, allowed=f'{100 * within:g} %' + ' or one cell' * (one['quantity'] in TO_A_CELL), **numbers)}."
 
 
 def judge(rows, by, within, in_plane=False):
@@ -483,8 +488,9 @@ def judge(rows, by, within, in_plane=False):
         values = [row.get(key) for row in rows]
         if any(value is not None for value in values):
             verdict = settles(sizes, values, within, cell if key in TO_A_CELL else 0.0)
-            judged.append({"quantity": key, "values": values, "state": verdict})
-            sentences.append(said_of_quantity(key, rows, verdict, thing, within, in_plane))
+            order = order_of(sizes[-3:], values[-3:], ORDERS) if verdict == "settles" else None
+            judged.append({"quantity": key, "values": values, "state": verdict, "order": order, "limit": order and values[-1] + rest_of(sizes, values, order)})
+            sentences.append(said_of_quantity(judged[-1], rows, thing, within, in_plane))
             decides |= verdict not in ("equal", "settles")
     return sentences + [f"Until another {thing} no longer changes these numbers, their scatter is their error."] * decides, decides, judged
 

@@ -79,6 +79,12 @@ class Verdicts(unittest.TestCase):
         self.assertIn(("load_time_of_failure_s", "missing"), [(one["quantity"], one["state"]) for one in judged])
         self.assertFalse(judge(rows(load_time_of_failure_s=[None] * 3), "cells", 0.05)[1])
 
+    def test_what_settles_has_an_order_and_a_limit(self):
+        sentences, _, judged = judge(rows(crest_displacement_m=[2.16, 2.04, 2.01]), "cells", 0.05)
+        self.assertIn("The crest displacement is 2.01 to 2.16 m, 7.5 % apart: it settles, to 2 m by extrapolation at the order 2, and the last refinement changes it by 1.5 %, "
+                      "within 5 %.", sentences)
+        self.assertAlmostEqual(judged[-1]["limit"], 2.0)
+
     def test_places_are_said_to_a_cell(self):
         sentences, decides, _ = judge(rows(travel_distance_m=[3.4, 3.0, 3.2]), "cells", 0.05)
         self.assertFalse(decides)

@@ -1301,7 +1301,7 @@ class Charts(unittest.TestCase):
     def test_bars_of_a_tornado_say_their_values(self):
         fit = {"case": "", "outcome": "travel_distance_m", "runs": 40, "mean": 5.0, "r2": 1.0,
                "bars": [{"variable": "friction", "unit": "deg", "quantiles": [20.5, 27.5], "low": 4.0, "high": 6.0}]}
-        figure = self.drawn(("", [[talus_study.tornado(fit, True, [])]]))
+        figure = self.drawn(("", [talus_study.tornado([fit], True)]))
         self.assertEqual([label.get_text() for label in figure.axes[0].get_yticklabels()], ["friction\n20.5 to 27.5 deg"])
         self.assertEqual([text.get_text() for text in figure.legends[0].get_texts()], ["variable at the 10 % quantile of these runs", "at their 90 % quantile"])
         self.assertIn("fit to 40 runs", figure.axes[0].get_title(loc="right"))
