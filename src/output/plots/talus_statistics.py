@@ -56,7 +56,7 @@ def extrapolate(refined):
     sizes, values = ([pair[k] for pair in known[-4:]] for k in (0, 1))
     changes = np.diff(values)
     if not len(changes):
-        return math.nan, math.inf, "too few runs"
+        return math.nan, math.inf, "no two runs differ by their last key: give --exact or --reference"
     order = None
     if len(values) > 2 and 0 < sizes[-1] < sizes[-2] and abs(sizes[-2] / sizes[-1] - sizes[-3] / sizes[-2]) < 0.05 * sizes[-2] / sizes[-1]:
         order = order_of(sizes[-3:], values[-3:], (0.5, 8))

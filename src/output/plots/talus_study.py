@@ -184,12 +184,14 @@ def against(key, label, rows, outcomes, title, lines, joined=True, limits=(), lo
 
     def draw(axes, own, column, colour, **look):
         known = sorted((at[row[key]], float(row[column])) for row in own if row.get(column) is not None)
-        axes.plot(*np.transpose(known or [(math.nan, math.nan)]), color=colour, lw=1.1, **(look if joined else look | {"ls": "", "marker": "o", "ms": 4}))
+        if known:
+            axes.plot(*np.transpose(known), color=colour, lw=1.1, **(look if joined else look | {"ls": "", "marker": "o", "ms": 4}))
         marks = {}
         for row in own:
             late = column == "load_time_of_failure_s" and row.get(column) is None
             state, y = ("broke off", 0) if row["failure"] else ("never", 1) if late else (row.get("state", ""), row.get(column))
-            marks.setdefault(state, []).append((at[row[key]], math.nan if y is None else float(y)))
+            if y is not None:
+                marks.setdefault(state, []).append((at[row[key]], float(y)))
         for state, points in marks.items():
             shape, fill, said = MARKS[state]
             axes.plot(*np.transpose(points), shape, color=colour, ms=4.5, fillstyle=fill, mfc="white" if fill == "none" else None, markerfacecoloralt="white", label=said,
@@ -381,7 +383,7 @@ def outcomes(runs, _):
     parts = [[row for row in rows if row["key"] == key] for key in dict.fromkeys(row["key"] for row in rows)]
     blocks = [[against("value", with_unit(part[0]["key"], part[0]["unit"]), part, of, title, lines, limits=[0]) for title, of in charted(part, runs.in_plane).items()]
               for part in parts]
-    keys = ", ".join(words(part[0]["key"].rpartition(".")[2]) for part in parts)
+    keys = ", ".join(filter(None, (words(part[0]["key"].rpartition(".")[2]) for part in parts)))
     pictures = {"outcomes": (f"Outcomes against {keys or 'the series'}", [*filter(None, blocks)])} if any(blocks) else {}
     return table(rows, columns, runs.in_plane), {}, pictures, len(runs.ended) < len(rows)
 
