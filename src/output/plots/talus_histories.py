@@ -50,7 +50,8 @@ def draw_histories(results, folder):
 
 def ground_of(history):
     """The components of the acceleration of the ground that vary [m/s2]."""
-    return {axis: values for axis, values in history.groups().get((GROUND, "m/s2"), {}).items() if changes(values)}
+    of_ground = [lines for (quantity, _), lines in history.groups().items() if quantity == GROUND]
+    return {axis: values for lines in of_ground for axis, values in lines.items() if changes(values)}
 
 
 def changes(values):
@@ -74,7 +75,7 @@ def draw_curves(history, quantity, unit, lines, title, per, path, tan_phi=None, 
     """`reset` is the stage at whose end the quantity was last set to 0, `ground` the acceleration of the ground [m/s2], which is drawn above."""
     if ground:
         figure, (above, axes) = plt.subplots(2, 1, sharex=True, figsize=(7.6, 5.1), gridspec_kw={"height_ratios": [1, 2.2]})
-        plot_lines(above, history, ground, "m/s2", "ground", per, style.INK if len(ground) == 1 else None)
+        plot_lines(above, history, ground, "m/s²", "ground", per, style.INK if len(ground) == 1 else None)
     else:
         figure, axes = plt.subplots(figsize=(7.6, 3.7))
     plot_lines(axes, history, lines, unit, words(quantity), per)
