@@ -200,8 +200,7 @@ Needs find_needs(Scene &scene, bool with_model) {
   needs.step_bound = simulation->step_bound();
   needs.altitude_rule = needs.mesh.smallest_altitude / fastest;
   needs.fixed_step = rule.fixed > 0;
-  needs.usual_step = rule.share * needs.critical_step;
-  needs.step = needs.fixed_step ? rule.fixed : needs.usual_step;
+  needs.step = needs.fixed_step ? rule.fixed : rule.share * needs.critical_step;
   MPI_Comm_size(PETSC_COMM_WORLD, &needs.ranks);
   burst(*simulation, scene, needs);
   needs.snapshots = 1;

@@ -58,7 +58,6 @@ struct Needs {
   std::string step_bound;           ///< what it is taken from, as a sentence
   double altitude_rule;             ///< smallest altitude over the largest wave speed [s]
   double step;                      ///< taken [s]
-  double usual_step;                ///< largest without integrator.step [s]
   bool fixed_step;                  ///< given by the scene
   int burst_steps = 0;              ///< timed
   double seconds_per_step = 0;      ///< of wall time, of soil at rest

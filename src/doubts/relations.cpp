@@ -11,6 +11,7 @@
 #include "physics/pores/hyperbolicity.h"
 #include "scene/body_source.h"
 #include "scene/boundary_source.h"
+#include "scene/quasi_static_source.h"
 #include "scene/reader.h"
 #include "scene/stage.h"
 #include "scene/water_source.h"
@@ -127,6 +128,10 @@ void doubt_cells(const Start &start, std::size_t b, Doubts &doubts) {
   constexpr double share = 0.02;            // of the free surface, which contains level ground
   constexpr double no_effect = 1e-3;        // c over the weight
   const BodyReport &body = start.bodies[b];
+  const auto rests = std::ranges::find_if(start.scene.stage, [](const Stage &stage) { return stage.is_static(); });
+  if (rests != start.scene.stage.end() && start.scene.quasi_static->elements != Elements::quadratic)
+    doubts.say({{"thin_body", body.one_element_across,
+                 "body." + body.name + " is one element across: stage." + rests->name + " will end the run"}});
   if (body.particles == 0 || start.depth <= 0 || start.scene.gravity_size() == 0) return;
   const double depth = start.depth_of(b), phi = body.strength.friction_angle[1],
                weight = body.mass / body.volume * start.scene.gravity_size() * depth;

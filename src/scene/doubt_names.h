@@ -23,7 +23,7 @@ inline constexpr std::string_view doubt_names =
     " coarse_cells drainage drift dry_boundary dry_pond early_suction excess_alone faces_left film"
     " free_side gravity_at_once gravity_ramp idle_earthquake late_load mesh_end mesh_units"
     " open_water pore_flow relative_permeability sealed_ground short_waves soft_water steep_face"
-    " strength undrained_stage void water_table ";
+    " strength thin_body undrained_stage void water_table ";
 
 constexpr bool is_doubt_name(std::string_view name) {
   return doubt_names.find(" " + std::string(name) + " ") != std::string_view::npos;

@@ -72,10 +72,13 @@ TEST(Check, DoubtsWhatFitsTheSoilBadly) {
   EXPECT_FALSE(says({"mesh.size=0.12"}, few));
   EXPECT_TRUE(says({"mesh.size=0.3"}, few));
   EXPECT_FALSE(says({drained, "water.table=[[0, 0.4], [2, 0.2]]"}, "water.table"));
-  EXPECT_TRUE(says({drained, "water.table=[[0, 1000]]"}, "water.table lies at y = 1000 m, and the soil at y = 0 to 0.5 m: are both in the same"));
+  EXPECT_TRUE(says({drained, "water.table=[[0, 1000]]"},
+                   "water.table lies at y = 1000 m, and the soil at y = 0 to 0.5 m: are both in the same"));
   EXPECT_TRUE(says({drained, "water.table=[[0, 1e5], [2, 1e3]]"}, "breaks off in its first steps"))
       << "a state that has broken off is not looked at";
-  EXPECT_TRUE(says({drained, "water.table=[[-9, 0.4], [-8, 0.2]]"}, "water.table lies at y = 0.2 to 0.4 m, x = -9 to -8 m, and the soil at y = 0 to 0.5 m, x = 0 to 1 m"));
+  EXPECT_TRUE(
+      says({drained, "water.table=[[-9, 0.4], [-8, 0.2]]"},
+           "water.table lies at y = 0.2 to 0.4 m, x = -9 to -8 m, and the soil at y = 0 to 0.5 m, x = 0 to 1 m"));
   EXPECT_TRUE(says({drained, "water.table=[[0, -1]]"}, "it gives no pore pressure"));
   EXPECT_FALSE(says({drained, "water.table=[[0, -1]]", "water.level=t"}, "it gives no pore pressure"));
   folder.write("scene.toml", good_scene);
