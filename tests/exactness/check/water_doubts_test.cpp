@@ -192,6 +192,19 @@ TEST(Check, DoubtsSoftWater) {
   EXPECT_FALSE(output("water.bulk_modulus=20 MPa").says(soft));
 }
 
+/// T = k M t / (gamma_w L^2) = 10 at k = 0.36 m/s for 0.5 m of soil in 0.05 s; 1e-10 m2 are 0.001 m/s, 1e-7 m2 are 1
+/// m/s.
+TEST(Check, DoubtsGivenPressuresWhereSoilCannotDrain) {
+  const Folder folder;
+  folder.write("scene.toml", sound_scene("drained")), folder.write("section.csv", good_section);
+  const auto doubted = [&](const std::string &key) {
+    return talus(folder, {"check", "scene.toml", "--json", "--set", key}).says("[drainage]");
+  };
+  EXPECT_TRUE(doubted("body.sand.permeability=1e-10"));
+  EXPECT_FALSE(doubted("body.sand.permeability=1e-7"));
+  EXPECT_FALSE(doubted("phases=saturated")) << "its pressure follows";
+}
+
 /// A boundary of water holds no soil.
 TEST(Check, DoubtsEndsOfWetSoilThatNothingHolds) {
   const Folder folder;
