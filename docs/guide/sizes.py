@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """Do the cells decide? `sizes.py TALUS FOLDER` runs `talus converge` on the slope of the guide, as it is and with brittle softening, with eight
-cell sizes; writes sizes.csv beside itself, and of the three default sizes converge.txt, what the program prints, and FOLDER/three/converge.png."""
+cell sizes; writes sizes.csv beside itself, and of the three default sizes converge.txt, what the program prints, and FOLDER/three/outcomes.png."""
 
 import csv
 import pathlib
@@ -12,7 +12,7 @@ HERE = pathlib.Path(__file__).parent
 SIZES = (0.8, 0.6, 0.5, 0.45, 0.4, 0.35, 0.3, 0.25)  # [m]
 BRITTLE = 100  # shape factor; the scene has 30
 WIDTH = 150  # of the page [characters]
-SHOWN = ("The slope fails", "The load time", "The displacement of crest", "The travel distance", "The volume")
+SHOWN = ("The slope fails", "The load time", "The crest displacement", "The travel distance", "The volume")
 
 
 def converge(talus, folder, *options):

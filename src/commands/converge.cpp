@@ -6,11 +6,7 @@
 #include "commands/sweep.h"
 #include "scene/body_source.h"
 #include "scene/mesh_source.h"
-#include "scene/quantity.h"
-#include "scene/reader.h"
 #include "scene/scene.h"
-#include "scene/words.h"
-#include "simulation/softening.h"
 #include "solvers/integrators.h"
 
 namespace talus {
@@ -22,11 +18,11 @@ struct ConvergeArguments : SweepOptions {
   double within = 5;  ///< [%]
 };
 
-/// The keys that are refined together, at their values in the scene, and the refinement.
+/// What is refined: a key and its values from coarse to fine, and other keys in proportion to it.
 struct Refinement {
-  std::map<std::string, double> keys;
-  std::vector<double> values;  ///< of the first key, from coarse to fine
-  std::string unit;            ///< of the values
+  std::string key, unit;
+  std::vector<double> values;
+  std::map<std::string, double> shares;  ///< of all keys, over the value of `key`
 };
 
 Refinement cells_of(const Scene &scene) {
@@ -35,67 +31,54 @@ Refinement cells_of(const Scene &scene) {
     throw SceneError(
         "converge --by cells needs a scene with mesh.section, whose cells it can make anew; the mesh file " +
         mesh.file + " stays as it is: compare runs with mesh.halvings = 0 and 1, or with meshes of your own");
-  Refinement r{{{"mesh.size", mesh.size}}, {mesh.size * std::sqrt(2.), mesh.size, mesh.size / std::sqrt(2.)}, "m"};
+  Refinement r{"mesh.size", "m", {mesh.size * std::sqrt(2.), mesh.size, mesh.size / std::sqrt(2.)}, {{"mesh.size", 1}}};
   for (std::size_t i = 0; i < mesh.refine.size(); ++i)
-    r.keys["mesh.refine." + std::to_string(i) + ".size"] = mesh.refine[i].size;
+    r.shares["mesh.refine." + std::to_string(i) + ".size"] = mesh.refine[i].size / mesh.size;
   return r;
 }
 
 /// The scene's own step is the largest, as larger ones may be unstable.
 Refinement steps_of(const Scene &scene) {
-  const auto refined = [](const char *key, double most, const char *unit) {
-    return Refinement{{{key, most}}, {most, most / std::sqrt(2.), most / 2}, unit};
-  };
   DeferredTable table = scene.integrator;
   const IntegratorSettings settings = read_integrator(table, fluids_move(scene.phases));
-  if (const auto *controlled = std::get_if<ArkodeSettings>(&settings); controlled && controlled->step == 0)
-    return refined("integrator.velocity_tolerance", controlled->velocity_tolerance, "m/s");
+  const auto *controlled = std::get_if<ArkodeSettings>(&settings);
   const StepRule rule = step_rule(settings);
-  return rule.fixed > 0 ? refined("integrator.step", rule.fixed, "s") : refined("integrator.fraction", rule.share, "");
+  const auto [key, unit, most] = controlled && controlled->step == 0
+                                     ? std::tuple("velocity_tolerance", "m/s", controlled->velocity_tolerance)
+                                 : rule.fixed > 0 ? std::tuple("step", "s", rule.fixed)
+                                                  : std::tuple("fraction", "", rule.share);
+  const std::string path = std::string("integrator.") + key;
+  return {path, unit, {most, most / std::sqrt(2.), most / 2}, {{path, 1}}};
 }
 
 Refinement particles_of(const Scene &scene) {
-  Refinement r{{}, {3, 6, 12}, ""};
+  Refinement r{"particles_per_cell", "", {3, 6, 12}, {}};
   if (scene.dimension == 3) r.values = {4, 8, 20};
-  for (const BodySource &body : scene.body) r.keys["body." + body.name + ".particles_per_cell"] = 1;
+  for (const BodySource &body : scene.body) r.shares["body." + body.name + ".particles_per_cell"] = 1;
   return r;
 }
 
-Refinement refinement_of(const Scene &scene, const ConvergeArguments &arguments) {
-  Refinement r = arguments.by == "cells"   ? cells_of(scene)
-                 : arguments.by == "steps" ? steps_of(scene)
-                                           : particles_of(scene);
-  if (!arguments.values.empty()) r.values = arguments.values;
-  std::sort(r.values.begin(), r.values.end());
-  if (arguments.by != "particles") std::reverse(r.values.begin(), r.values.end());
-  if (std::adjacent_find(r.values.begin(), r.values.end()) != r.values.end() || r.values.size() < 3)
-    throw SceneError(
-        "converge --values needs three different values or more: two cannot show whether a result settles");
-  return r;
-}
-
-/// Four digits, so that sizes read well in tables and names.
-double four_digits(double value) {
-  const double unit = std::pow(10, std::floor(std::log10(std::abs(value))) - 3);
-  return unit < 1 ? std::round(value / unit) / std::round(1 / unit) : std::round(value);
-}
+const std::map<std::string, Refinement (*)(const Scene &)> refinements{
+    {"cells", cells_of}, {"steps", steps_of}, {"particles", particles_of}};
 
 int converge(ConvergeArguments arguments) {
   arguments.scene = find_scene(arguments.scene);
-  const Scene scene = read_wholly(arguments.scene, arguments.set, arguments.no_umat);
+  const Scene scene = read_scene(arguments.scene, arguments.set);
   if (arguments.directory.empty()) arguments.directory = "results/converge_" + short_name(arguments.scene);
-  const Refinement r = refinement_of(scene, arguments);
+  const Refinement r = refinements.at(arguments.by)(scene);
+  std::vector<double> values = arguments.values.empty() ? r.values : arguments.values;
+  std::ranges::sort(values);
+  if (arguments.by != "particles") std::ranges::reverse(values);
+  if (std::ranges::adjacent_find(values) != values.end() || values.size() < 3)
+    throw SceneError(
+        "converge --values needs three different values or more: two cannot show whether a result settles");
   Sweep sweep{.scene = arguments.scene, .set = arguments.set, .options = arguments};
-  const bool softening =
-      std::any_of(scene.body.begin(), scene.body.end(), [](const BodySource &b) { return softens(read_law(b.law)); });
-  sweep.shown = {
-      {"preset", "converge"}, {"by", arguments.by}, {"within", arguments.within / 100}, {"softening", softening}};
-  const double own = r.keys.count("mesh.size") ? r.keys.at("mesh.size") : r.keys.begin()->second;
-  for (const double value : r.values) {
-    Trial trial{.columns = {{"value", four_digits(value)}, {"unit", r.unit}},
-                .folder = "run_" + shortest(four_digits(value))};  // more values go on with the same folder
-    for (const auto &[key, start] : r.keys)
-      trial.overrides.push_back(key + "=" + shortest(four_digits(start * value / own)));
+  sweep.shown = {{"preset", "converge"}, {"by", arguments.by}, {"within", arguments.within / 100}};
+  for (const double value : values) {
+    const std::string name = in_digits(value, 4);  // reads well in tables and names
+    Trial trial{.columns = {{"series", arguments.by}, {"key", r.key}, {"value", std::stod(name)}, {"unit", r.unit}},
+                .folder = "run_" + name};  // more values go on with the same folder
+    for (const auto &[key, share] : r.shares) trial.overrides.push_back(key + "=" + in_digits(share * value, 4));
     sweep.trials.push_back(trial);
   }
   return perform(sweep);
@@ -106,16 +89,12 @@ int converge(ConvergeArguments arguments) {
 Action add_converge(CLI::App &app) {
   auto arguments = std::make_shared<ConvergeArguments>();
   CLI::App *command = app.add_subcommand(
-      "converge", "run a scene with several cell sizes: do the cells decide whether, when and how far it slides?");
+      "converge",
+      "run a scene with several cell sizes: do the cells decide whether, when and how far it slides? Exit status 1: "
+      "they do, as a result has not settled");
   command->add_option("SCENE", arguments->scene, "scene file (.toml) or the name of a gallery scene")->required();
   command->add_option("--by", arguments->by, "what is refined: cells (mesh.size), steps, particles (per cell)")
-      ->check(CLI::Validator(
-          [](const std::string &word) {
-            const std::vector<std::string> known{"cells", "particles", "steps"};
-            return std::ranges::count(known, word) ? std::string()
-                                                   : "there is no " + word + " to refine; " + suggestion(word, known);
-          },
-          "cells|steps|particles"))
+      ->check(CLI::IsMember(refinements))
       ->default_str("cells");
   command
       ->add_option(

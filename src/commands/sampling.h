@@ -1,7 +1,7 @@
 #pragma once
-/// Random numbers of `talus study`: nested Latin hypercubes, distributions, correlation. The numbers depend on the seed
+/// Random numbers of `talus study`: nested Latin hypercubes and the normal distribution. The numbers depend on the seed
 /// alone, not on the platform or on how many samples follow.
-#include <algorithm>
+#include <Eigen/Dense>
 #include <cmath>
 #include <cstdint>
 #include <random>
@@ -54,31 +54,11 @@ inline double normal_quantile(double p) {
   return x;
 }
 
-/// Lower triangle L of a matrix A = L L^T (Cholesky), row by row; empty where A is not positive definite.
-inline std::vector<std::vector<double>> cholesky(const std::vector<std::vector<double>> &a) {
-  std::vector<std::vector<double>> l(a.size(), std::vector<double>(a.size()));
-  for (std::size_t i = 0; i < a.size(); ++i)
-    for (std::size_t j = 0; j <= i; ++j) {
-      double sum = a[i][j];
-      for (std::size_t k = 0; k < j; ++k) sum -= l[i][k] * l[j][k];
-      if (i == j && !(sum > 1e-12)) return {};
-      l[i][j] = i == j ? std::sqrt(sum) : sum / l[j][j];
-    }
-  return l;
-}
-
-/// Coordinates of a sample point, correlated by a Gaussian copula: the normal scores of `u` are multiplied with L,
-/// whose rows have length 1, so that every coordinate remains uniform on (0, 1).
-inline std::vector<double> correlated(const std::vector<double> &u, const std::vector<std::vector<double>> &l) {
-  std::vector<double> result;
-  for (std::size_t i = 0; i < u.size(); ++i) {
-    const bool alone = std::all_of(l[i].begin(), l[i].begin() + static_cast<std::ptrdiff_t>(i),
-                                   [](double weight) { return weight == 0; });
-    double score = 0;
-    for (std::size_t j = 0; j <= i; ++j) score += alone ? 0 : l[i][j] * normal_quantile(u[j]);
-    result.push_back(alone ? u[i] : normal_distribution(score));
-  }
-  return result;
+/// Coordinates of a sample point, correlated by a Gaussian copula: the normal scores of `u` are multiplied with the
+/// lower triangle L of their correlation matrix L L^T, whose rows have length 1, so that every coordinate remains
+/// uniform on (0, 1).
+inline Eigen::VectorXd correlated(const Eigen::VectorXd &u, const Eigen::MatrixXd &triangle) {
+  return (triangle * u.unaryExpr(&normal_quantile)).unaryExpr(&normal_distribution);
 }
 
 }  // namespace talus

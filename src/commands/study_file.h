@@ -16,9 +16,11 @@ namespace talus {
 
 inline constexpr Range any_number{-1e300, 1e300};
 
-/// Mean and standard deviation of the variable, before the distribution is cut off at its bounds and scaled to a total
-/// probability of 1.
-struct Moments {
+/// A normal distribution, or one whose logarithm is normal, that is cut off at its bounds and scaled to a total
+/// probability of 1. Mean and standard deviation are those of the variable itself before that.
+template <bool logarithmic>
+struct OfMoments {
+  static constexpr const char *name = logarithmic ? "lognormal" : "normal";
   double low = any_number.low, high = any_number.high;
   double mean = required, standard_deviation = 0, coefficient_of_variation = 0;
   template <class Visitor>
@@ -33,46 +35,31 @@ struct Moments {
   double deviation() const {
     return standard_deviation > 0 ? standard_deviation : coefficient_of_variation * std::abs(mean);
   }
-};
-
-/// A distribution of which a function, `score`, is standard normal.
-template <class Kind>
-struct OfNormalScore : Moments {
-  double share(double x) const { return normal_distribution(kind().score(x)); }
+  /// Of the normal score, which is standard normal before the cut.
+  double spread() const { return logarithmic ? std::sqrt(std::log1p(std::pow(deviation() / mean, 2))) : deviation(); }
+  double score(double x) const {
+    if (logarithmic) return x <= 0 ? -INFINITY : std::log(x / mean) / spread() + 0.5 * spread();
+    return (x - mean) / spread();
+  }
+  double at(double score) const {
+    return logarithmic ? mean * std::exp(spread() * (score - 0.5 * spread())) : mean + spread() * score;
+  }
+  double share(double x) const { return normal_distribution(score(x)); }
   double quantile(double u) const {
     const double below = share(low);
-    return std::clamp(kind().at(normal_quantile(below + u * (share(high) - below))), low, high);
+    return std::clamp(at(normal_quantile(below + u * (share(high) - below))), low, high);
   }
   std::string problem() const {
-    if (const std::string wrong = kind().wrong_mean(); !wrong.empty()) return wrong;
+    if (logarithmic && !(mean > 0)) return "mean must be above 0 for a lognormal distribution";
     if ((standard_deviation > 0) == (coefficient_of_variation > 0))
       return "needs one of standard_deviation and coefficient_of_variation, above 0";
     if (!(deviation() > 0)) return "mean must differ from 0 where coefficient_of_variation gives the deviation";
     if (!(low < high)) return "low must be less than high = " + shortest(high);
-    return share(high) - share(low) > 1e-6
-               ? ""
-               : "low and high leave almost nothing of the distribution: take others, or a uniform one";
+    return share(high) - share(low) > 1e-6 ? "" : "low and high leave almost nothing of the distribution: take others";
   }
-
- private:
-  const Kind &kind() const { return static_cast<const Kind &>(*this); }
 };
-
-struct Normal : OfNormalScore<Normal> {
-  static constexpr const char *name = "normal";
-  double score(double x) const { return (x - mean) / deviation(); }
-  double at(double score) const { return mean + deviation() * score; }
-  std::string wrong_mean() const { return ""; }
-};
-
-/// The logarithm is normal; mean and deviation are those of the variable itself.
-struct Lognormal : OfNormalScore<Lognormal> {
-  static constexpr const char *name = "lognormal";
-  double spread() const { return std::sqrt(std::log1p(std::pow(deviation() / mean, 2))); }
-  double score(double x) const { return x <= 0 ? -INFINITY : std::log(x / mean) / spread() + 0.5 * spread(); }
-  double at(double score) const { return mean * std::exp(spread() * (score - 0.5 * spread())); }
-  std::string wrong_mean() const { return mean > 0 ? "" : "mean must be above 0 for a lognormal distribution"; }
-};
+using Normal = OfMoments<false>;
+using Lognormal = OfMoments<true>;
 
 struct Uniform {
   static constexpr const char *name = "uniform";

@@ -19,16 +19,15 @@ struct Trial {
   std::vector<std::string> overrides{};  ///< key.path=value, in addition to those of all runs
   Json columns = Json::object();         ///< of the table, before those of all runs
   std::string folder{};                  ///< of its results, in that of the sweep; runNNNNN unless given
-  bool done = false, failed = false;     ///< failed: it ended with an error
-  std::string cause{};                   ///< the last message of a run that failed
-  double cpu = 0, wall = 0;              ///< of the whole process, meshing included [s]
+  Json record{};                         ///< what it is, reads and came to: its file `trial`
+  bool done = false;
 };
 
 /// Options of all commands that sweep.
 struct SweepOptions {
-  std::string directory;  ///< of runs, table and pictures
-  std::vector<std::string> set;
-  int jobs = 0;  ///< runs at the same time; 0: one per core
+  std::string directory;         ///< of runs, table and pictures
+  std::vector<std::string> set;  ///< given by --set
+  int jobs = 0;                  ///< runs at the same time; 0: one per core
   bool force = false, no_plot = false, no_umat = false;
 };
 /// Adds them, and returns --set.
@@ -41,11 +40,10 @@ struct Sweep {
   SweepOptions options;  ///< force: runs of another sweep in the same folders, and failed runs, are replaced; no_umat:
                          ///< no run loads a library
   /// Columns of history.csv: the stages must last so long, and one that no history of the scene has is refused before
-  /// anything runs; the first run under way that lacks one ends all.
+  /// anything runs.
   std::vector<std::string> measures{};
   Json shown = Json::object();              ///< what the script is told beside the runs, `preset` first of all
   std::vector<std::string> command{"run"};  ///< of each run, with its options
-  bool refusal_ends = true;                 ///< a run that is refused as bad input ends all; else it is one that failed
   std::vector<Trial> trials{};
 };
 
@@ -59,10 +57,6 @@ std::string run_name(std::size_t number);
 /// or SIGTERM, which end the runs under way too, or where a run was killed: called again, the command continues with
 /// the missing runs.
 int perform(Sweep sweep);
-
-/// The scene with all that other rooms read of it later: laws, boundaries and the integrator. Throws SceneError where a
-/// key or a value of any of them is refused, with `no_umat` also a law that loads a library.
-Scene read_wholly(const std::string &file, const std::vector<std::string> &set, bool no_umat);
 
 /// What is wrong with a list of keys of a scene that take values together, as a sentence that goes on from it: two are
 /// the same key, or one lies in the table at another. Empty if nothing is.

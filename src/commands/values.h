@@ -1,14 +1,14 @@
 #pragma once
 /// Values and measures as they are typed: series, lists with units, columns of a history.
-#include <algorithm>
 #include <cmath>
-#include <fstream>
+#include <cstdio>
+#include <cstdlib>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "scene/reader.h"
-#include "scene/words.h"
 
 namespace talus {
 
@@ -40,46 +40,35 @@ inline std::vector<std::string> pieces(const std::string &text, char separator) 
   return out;
 }
 
-/// A number, also one with a unit behind it ("5 mm"); NaN if it is none.
-inline double number_of(const std::string &text) {
-  const std::string bare = !text.empty() && text.front() == '"' ? text.substr(1) : text;
-  char *end = nullptr;
-  const double value = std::strtod(bare.c_str(), &end);
-  return end == bare.c_str() ? NAN : value;
+/// A number with so many digits.
+inline std::string in_digits(double value, int digits) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.*g", digits, value);
+  return text;
 }
 
-/// What stands behind the number of a value, its unit; empty where it is none.
-inline std::string unit_behind(const std::string &text) {
-  if (std::isnan(number_of(text))) return "";
-  std::string bare = text;
-  std::erase(bare, '"');
+/// A number and what stands behind it, its unit: "5 mm". NaN and nothing where it is none.
+struct Typed {
+  double number = NAN;
+  std::string unit{};
+};
+inline Typed typed(std::string text) {
+  std::erase(text, '"');
   char *end = nullptr;
-  std::strtod(bare.c_str(), &end);
-  return trimmed(end);
+  const double number = std::strtod(text.c_str(), &end);
+  return end == text.c_str() ? Typed{} : Typed{number, trimmed(end)};
 }
 
-/// What is wrong with a list whose numbers have different units, or some of them a unit and others none: those would be
-/// read in the unit of the key, "4,8,12 kPa" as 4 Pa, 8 Pa and 12 kPa, and charts would order them by their numbers.
-/// Empty if nothing is.
+/// What is wrong with a list whose numbers have different units, or some of them a unit and others none: "4,8,12 kPa"
+/// would be 4 Pa, 8 Pa and 12 kPa. Empty if nothing is.
 inline std::string mixed_units(const std::vector<std::string> &values) {
-  std::vector<std::string> numbers;
+  std::set<std::string> units;
   for (const std::string &value : values)
-    if (!std::isnan(number_of(value))) numbers.push_back(value);
-  if (numbers.empty()) return "";
-  const std::string &last = numbers.back(), unit = unit_behind(last);
-  for (const std::string &value : numbers) {
-    const std::string other = unit_behind(value), named = unit.empty() ? other : unit;
-    if (other == unit) continue;
-    std::string all;
-    for (const std::string &one : numbers)
-      all += (all.empty() ? "" : ",") + one + (unit_behind(one).empty() ? " " + named : "");
-    return !other.empty() && !unit.empty()
-               ? "has values in " + other + " and in " + unit + ": give all of them in one unit"
-               : "has a unit at " + (unit.empty() ? value : last) + " and none at " + (unit.empty() ? last : value) +
-                     ", which would be a number in the unit of the key: give all of them a unit, such as " + all +
-                     ", or none";
-  }
-  return "";
+    if (!std::isnan(typed(value).number)) units.insert(typed(value).unit);
+  std::string said;
+  for (const std::string &unit : units)
+    said += (said.empty() ? "has numbers " : " and ") + (unit.empty() ? "without a unit" : "in " + unit);
+  return units.size() < 2 ? "" : said + ": give all of them one unit, or none";
 }
 
 /// "NAME: key=a,b; key=c". Throws SceneError.
@@ -92,13 +81,12 @@ inline Series parse_series(const std::string &text) {
   for (const std::string &part : pieces(text.substr(colon + 1), ';')) {
     if (part.empty()) continue;
     const size_t equal = part.find('=');
-    if (equal == std::string::npos || equal == 0)
-      throw SceneError("--series \"" + text + "\": `" + part + "` must be key.path=value,value,...");
-    series.lists.emplace_back(trimmed(part.substr(0, equal)), pieces(part.substr(equal + 1), ','));
-    for (const std::string &value : series.lists.back().second)
-      if (value.empty()) throw SceneError("--series \"" + text + "\": `" + part + "` has an empty value");
-    if (const std::string wrong = mixed_units(series.lists.back().second); !wrong.empty())
-      throw SceneError("--series \"" + text + "\": `" + part + "` " + wrong);
+    const auto values = pieces(equal == std::string::npos ? "" : part.substr(equal + 1), ',');
+    std::string wrong = mixed_units(values);
+    for (const std::string &value : values)
+      if (equal == 0 || value.empty()) wrong = "must be key.path=value,value,...";
+    if (!wrong.empty()) throw SceneError("--series \"" + text + "\": `" + part + "` " + wrong);
+    series.lists.emplace_back(trimmed(part.substr(0, equal)), values);
   }
   return series;
 }
@@ -122,46 +110,17 @@ inline std::vector<std::vector<std::string>> products(const Series &series) {
 struct Measure {
   std::string column;
   double time = NAN;  ///< NaN: the last line
-  bool largest = false;
 };
 
+/// COLUMN, COLUMN@TIME or max:COLUMN. Throws SceneError.
 inline Measure parse_measure(const std::string &text) {
-  Measure m;
-  m.largest = text.rfind("max:", 0) == 0;
-  m.column = m.largest ? text.substr(4) : text;
-  const size_t at = m.column.find('@');
-  if (at == std::string::npos) return m;
-  m.time = number_of(m.column.substr(at + 1)), m.column = m.column.substr(0, at);
-  if (m.largest || !std::isfinite(m.time))
+  const bool largest = text.starts_with("max:");
+  const size_t at = text.find('@'), from = largest ? 4 : 0;
+  if (at == std::string::npos) return {text.substr(from)};
+  const double time = typed(text.substr(at + 1)).number;
+  if (largest || !std::isfinite(time))
     throw SceneError("--measure " + text + " must be COLUMN, COLUMN@TIME or max:COLUMN");
-  return m;
-}
-
-/// A cell of a CSV file without its quotes.
-inline std::string unquoted(const std::string &cell) {
-  if (cell.size() < 2 || cell.front() != '"' || cell.back() != '"') return cell;
-  std::string text;
-  for (std::size_t i = 1; i + 1 < cell.size(); ++i) {
-    text += cell[i];
-    if (cell[i] == '"') ++i;  // a doubled quote stands for one
-  }
-  return text;
-}
-
-/// The names of the columns of a history.csv; none where its first line is not written yet.
-inline std::vector<std::string> columns_of(const std::string &path) {
-  std::ifstream file(path);
-  std::string line;
-  if (!std::getline(file, line) || file.eof()) return {};
-  std::vector<std::string> names = pieces(line, ',');
-  for (std::string &name : names) name = unquoted(name);
-  return names;
-}
-
-/// Throws SceneError with the nearest name where history.csv with the columns `names` lacks one.
-inline void require_column(const std::vector<std::string> &names, const std::string &column) {
-  if (std::find(names.begin(), names.end(), column) == names.end())
-    throw SceneError("history.csv has no column " + column + "; " + suggestion(column, names));
+  return {text.substr(0, at), time};
 }
 
 }  // namespace talus

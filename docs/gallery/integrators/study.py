@@ -72,10 +72,11 @@ def rows_of(path):
 
 
 def figure():
-    from talus_study import draw_errors
+    from talus_study import chart_of_errors, charts
     for name in STUDIES.keys() - {"frozen", "plastic", "crossing"}:  # runs.py draws these side by side
         if (HERE / f"{name}.csv").exists():
-            draw_errors(rows_of(HERE / f"{name}.csv"), rows_of(HERE / f"{name}_reference.csv")[0], HERE / f"{name}.png")
+            what, *panels = chart_of_errors(rows_of(HERE / f"{name}.csv"), rows_of(HERE / f"{name}_reference.csv")[0])
+            charts(HERE / f"{name}.png", what, "", *panels)
 
 
 if __name__ == "__main__":

@@ -6,7 +6,6 @@ beginning of a failure. Otherwise the soil *stands*: it moved by a negligible pa
 is that of the last snapshot, since the start or the last reset.
 """
 
-import csv
 import json
 import math
 
@@ -92,9 +91,3 @@ def write_json(path, page):
             return [cleaned(one) for one in value]
         return finite(value) if isinstance(value, float) else value
     path.write_text(json.dumps(cleaned(page), indent=1, allow_nan=False) + "\n")
-
-
-def warnings_in(folder):
-    """What the runs in a folder of `talus study`, `compare` or `converge` warned of, as the program gathered it."""
-    with open(folder / "warnings.csv", newline="") as file:
-        return [row | {"runs": int(row["runs"])} for row in csv.DictReader(file)]

@@ -1,20 +1,10 @@
-"""The arithmetic of studies: intervals of probabilities, correlations of samples, limits of refined values."""
+"""The arithmetic of studies: intervals of probabilities, limits of refined values."""
 
 import math
 
 import numpy as np
 
 ORDERS = (0.5, 3.0)  # of convergence: errors of cells and steps have 1 or 2; beyond 3 two values are near by chance
-
-
-def binomial_tail(k, n, p):
-    """Probability of k or more successes in n trials of probability p."""
-    if k <= 0:
-        return 1.0
-    if p in (0.0, 1.0):
-        return p
-    terms = [math.lgamma(n + 1) - math.lgamma(i + 1) - math.lgamma(n - i + 1) + i * math.log(p) + (n - i) * math.log1p(-p) for i in range(k, n + 1)]
-    return min(1.0, math.fsum(map(math.exp, terms)))
 
 
 def solved(function, target, low=0.0, high=1.0):
@@ -25,28 +15,18 @@ def solved(function, target, low=0.0, high=1.0):
     return 0.5 * (low + high)
 
 
+def binomial_tail(k, n, p):
+    """Probability of k or more successes in n trials of probability 0 < p < 1."""
+    terms = [math.lgamma(n + 1) - math.lgamma(i + 1) - math.lgamma(n - i + 1) + i * math.log(p) + (n - i) * math.log1p(-p) for i in range(k, n + 1)]
+    return min(1.0, math.fsum(map(math.exp, terms)))
+
+
 def clopper_pearson(k, n, confidence):
     """Interval of a probability of which k of n independent trials had success (Clopper & Pearson 1934). It covers the probability at least
     with the confidence; for a Latin hypercube, whose estimates scatter less, with more."""
     rest = 0.5 * (1 - confidence)
     low = 0.0 if k == 0 else solved(lambda p: binomial_tail(k, n, p), rest)
     return low, 1.0 if k == n else solved(lambda p: binomial_tail(k + 1, n, p), 1 - rest)
-
-
-def far_from(found, asked, n):
-    """Is the correlation in a sample of n normal pairs far from that of their distribution? Its Fisher transform artanh r scatters about artanh of that with the
-    deviation 1 / sqrt(n - 3), nearly normally and alike for any correlation (Fisher 1921); two deviations, about 2 / sqrt(n) for weak correlations, are
-    passed by 5 % of all samples. Three pairs or fewer say nothing."""
-    return n > 3 and bool(abs(np.arctanh(found) - np.arctanh(asked)) * math.sqrt(n - 3) > 2)
-
-
-def correlations(names, asked, scores):
-    """Asked and found correlation of the normal scores of random variables: of the pairs that shall be correlated, and of others whose sample is by chance."""
-    samples = len(scores[0]) if scores else 0
-    found = np.corrcoef(scores) if samples > 1 and len(names) > 1 else ()
-    pairs = [{"between": [names[a], names[b]], "asked": asked[a][b], "sample": float(found[a][b]), "samples": samples, "far": far_from(found[a][b], asked[a][b], samples)}
-             for b in range(len(found)) for a in range(b)]
-    return [pair for pair in pairs if pair["asked"] or pair["far"]]
 
 
 def order_of(sizes, values, bounds):
@@ -59,6 +39,11 @@ def order_of(sizes, values, bounds):
     return solved(ratio, before / last, low, high) if last and ratio(low) <= before / last <= ratio(high) else None
 
 
+def rest_of(sizes, values, order):
+    """What is left from the finest value up to the limit (Richardson's extrapolation)."""
+    return (values[-1] - values[-2]) / ((sizes[-2] / sizes[-1]) ** order - 1)
+
+
 def extrapolate(refined):
     """(value, uncertainty, origin) of the limit of values refined by a parameter that goes to zero, from the three finest: Richardson's extrapolation with
     the order that they show, if they converge at one between 0.5 and 8, and if above 2.5 a fourth run, where there is one, lies on the same way (a high order
@@ -69,16 +54,16 @@ def extrapolate(refined):
         if not known or known[-1][1] != value:
             known.append((size, value))
     sizes, values = ([pair[k] for pair in known[-4:]] for k in (0, 1))
-    changes = [after - before for before, after in zip(values, values[1:])]
-    if not changes:
-        return math.nan, math.inf, "too few runs"
+    changes = np.diff(values)
+    if not len(changes):
+        return math.nan, math.inf, "no two runs differ by their last key: give --exact or --reference"
     order = None
     if len(values) > 2 and 0 < sizes[-1] < sizes[-2] and abs(sizes[-2] / sizes[-1] - sizes[-3] / sizes[-2]) < 0.05 * sizes[-2] / sizes[-1]:
         order = order_of(sizes[-3:], values[-3:], (0.5, 8))
     if order and (order <= 2.5 or len(changes) < 3 or changes[0] / changes[1] >= 1):
-        rest = changes[-1] / ((sizes[-2] / sizes[-1]) ** order - 1)
+        rest = rest_of(sizes, values, order)
         return values[-1] + rest, abs(rest), f"extrapolated at the observed order {order:.2g}"
-    return values[-1], max(map(abs, changes[-2:])), "its finest run"
+    return values[-1], float(max(abs(changes[-2:]))), "its finest run"
 
 
 def settles(sizes, values, within, least=0.0):
@@ -91,14 +76,10 @@ def settles(sizes, values, within, least=0.0):
     "open": all else."""
     if None in values:
         return "missing"
-    allowed = max(within * abs(values[-1]), least)
-    if max(values) - min(values) <= allowed:
+    allowed, changes = max(within * abs(values[-1]), least), np.diff(values)
+    if np.ptp(values) <= allowed:
         return "equal"
-    changes = [after - before for before, after in zip(values, values[1:])]
     if min(changes) < 0 < max(changes):
         return "swings"
     orders = [order_of(sizes[k:k + 3], values[k:k + 3], ORDERS) for k in range(len(values) - 2)]
-    if None in orders:
-        return "open"
-    rest = abs(changes[-1]) / ((sizes[-2] / sizes[-1]) ** orders[-1] - 1)
-    return "settles" if max(abs(changes[-1]), rest) <= allowed else "open"
+    return "settles" if None not in orders and max(abs(changes[-1]), abs(rest_of(sizes, values, orders[-1]))) <= allowed else "open"

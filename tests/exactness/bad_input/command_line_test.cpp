@@ -26,7 +26,7 @@ const WrongWords wrong_words[] = {
     {"a_word_too_many", {"check", "scene.toml", "other.toml"}, {"check takes nothing more, and there is other.toml"}},
     {"unknown_quantity_to_refine",
      {"converge", "scene.toml", "--by", "cell"},
-     {"there is no cell to refine; did you mean `cells`?"}},
+     {"--by: cell not in {cells,particles,steps}"}},
     {"scene_not_there", {"run", "noscene.toml"}, {"noscene.toml is neither a file nor a gallery scene", "column"}},
     {"scene_is_a_folder", {"check", "."}, {". is neither a file nor a gallery scene"}},
     {"scene_is_a_section", {"check", "section.csv"}, {"section.csv is a section, not a scene"}},

@@ -51,13 +51,12 @@ class Verdicts(unittest.TestCase):
         runs = rows(state=["fails", "stands", "fails"], largest_displacement_m=[2.0, 0.01, 2.1])
         sentences, decides, _ = judge(runs, "cells", 0.05)
         self.assertTrue(decides)
-        self.assertEqual(sentences[0], "The slope fails with 0.4 m, 0.1 m and stands with 0.2 m: the cell size decides whether it fails.")
+        self.assertEqual(sentences, ["The slope fails with 0.4 m, 0.1 m and stands with 0.2 m: the cell size decides whether it fails."])
 
     def test_a_motion_of_less_than_a_cell_is_said(self):
         runs = rows(state=["moves", "fails", "fails"], largest_displacement_m=[0.3, 0.6, 0.9])
-        self.assertEqual(judge(runs, "cells", 0.05)[0][0],
-                         "The slope fails with 0.2 m, 0.1 m and moves by less than a cell of 0.4 m with 0.4 m: the cell size decides whether it fails.")
-        self.assertEqual(judge(rows(state=["moves"] * 3), "cells", 0.05)[0][0], "The slope moves by less than a cell of 0.4 m in all 3 runs.")
+        self.assertEqual(judge(runs, "cells", 0.05)[0][0], "The slope fails with 0.2 m, 0.1 m and moves with 0.4 m: the cell size decides whether it fails.")
+        self.assertEqual(judge(rows(state=["moves"] * 3), "cells", 0.05)[0][0], "The slope moves in all 3 runs.")
 
     def test_equal_displacements_do_not_divide_runs_into_failing_and_standing(self):
         runs = rows(state=["fails", "moves", "fails"], largest_displacement_m=[0.401, 0.399, 0.402])  # about the size of a cell
@@ -67,8 +66,8 @@ class Verdicts(unittest.TestCase):
         runs = rows(load_time_of_failure_s=[13.2, 13.4, 13.3], crest_displacement_m=[6.0, 4.0, 5.0])
         sentences, decides, judged = judge(runs, "cells", 0.05)
         self.assertTrue(decides)
-        self.assertIn("The load time at failure is 13.2 to 13.4 s, 1.5 % apart: the cell size does not decide it within 5 %.", sentences)
-        self.assertIn("The displacement of crest is 4 to 6 m, 40 % apart: it swings, and the cell size decides it.", sentences)
+        self.assertIn("The load time of failure is 13.2 to 13.4 s, 1.5 % apart: the cell size does not decide it within 5 %.", sentences)
+        self.assertIn("The crest displacement is 4 to 6 m, 40 % apart: it swings, and the cell size decides it.", sentences)
         self.assertEqual([(one["quantity"], one["state"]) for one in judged],
                          [("load_time_of_failure_s", "equal"), ("largest_displacement_m", "equal"), ("crest_displacement_m", "swings")])
         self.assertFalse(judge(rows(load_time_of_failure_s=[13.2, 13.4, 13.3]), "cells", 0.05)[1])
@@ -76,14 +75,20 @@ class Verdicts(unittest.TestCase):
     def test_a_missing_value_is_said_and_decides(self):
         sentences, decides, judged = judge(rows(load_time_of_failure_s=[13.04, None, 11.47]), "cells", 0.05)
         self.assertTrue(decides)
-        self.assertIn("The load time at failure is missing with 0.2 m, and 13.04 s with 0.4 m, 11.47 s with 0.1 m: the cell size decides it.", sentences)
+        self.assertIn("The load time of failure is 11.5 to 13 s, 14 % apart and missing with 0.2 m: the cell size decides it.", sentences)
         self.assertIn(("load_time_of_failure_s", "missing"), [(one["quantity"], one["state"]) for one in judged])
         self.assertFalse(judge(rows(load_time_of_failure_s=[None] * 3), "cells", 0.05)[1])
 
-    def test_averaging_is_advised_where_soil_softens(self):
-        runs = rows(crest_displacement_m=[6.0, 4.0, 5.0])
-        for by, softening, advised in (("cells", True, True), ("cells", False, False), ("steps", True, False)):
-            self.assertEqual("averaging_length" in judge(runs, by, 0.05, softening)[0][-1], advised)
+    def test_what_settles_has_an_order_and_a_limit(self):
+        sentences, _, judged = judge(rows(crest_displacement_m=[2.16, 2.04, 2.01]), "cells", 0.05)
+        self.assertIn("The crest displacement is 2.01 to 2.16 m, 7.5 % apart: it settles, to 2 m by extrapolation at the order 2, and the last refinement changes it by 1.5 %, "
+                      "within 5 %.", sentences)
+        self.assertAlmostEqual(judged[-1]["limit"], 2.0)
+
+    def test_places_are_said_to_a_cell(self):
+        sentences, decides, _ = judge(rows(travel_distance_m=[3.4, 3.0, 3.2]), "cells", 0.05)
+        self.assertFalse(decides)
+        self.assertIn("The travel distance is 3 to 3.4 m, 12 % apart: the cell size does not decide it within 5 % or one cell.", sentences)
 
     def test_a_run_that_broke_off_is_no_agreement(self):
         runs = rows() + [{"value": 0.05, "unit": "m", "failure": "a particle left the mesh"}]

@@ -12,7 +12,6 @@ import numpy as np
 from PIL import Image
 
 sys.path.insert(0, sys.argv.pop(1))
-import talus_study  # noqa: E402
 import talus_relief as relief  # noqa: E402
 import talus_sections  # noqa: E402
 from talus_ground import Filling, Ground  # noqa: E402
@@ -361,10 +360,8 @@ class Pictures(unittest.TestCase):
         colours = Colours("displacement", snapshots)
         with tempfile.TemporaryDirectory() as folder:
             path = pathlib.Path(folder) / "picture.png"
-            row = {"state": "stands", "load_time_of_failure_s": None, "value": SPACING, "unit": "m"}
             for draw in (lambda: painter.large("displacement", colours, snapshots, path), lambda: painter.over_time("displacement", colours, snapshots, path),
-                         lambda: painter.frame("displacement", colours, snapshots[1], "real time", path),
-                         lambda: talus_study.draw_sections([results, results], [row, row], "cells", path)):
+                         lambda: painter.frame("displacement", colours, snapshots[1], "real time", path)):
                 with Image.open(draw()) as picture:
                     seen = np.asarray(picture.convert("RGB"), float)
                     self.assertGreater((np.ptp(seen, axis=2) > 60).mean(), 0.01)  # there is colour in it

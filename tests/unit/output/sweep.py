@@ -1,4 +1,4 @@
-"""The arithmetic of a sweep on numbers: measures, references, correlations, warnings. Argument 1 is the folder of the scripts."""
+"""The arithmetic of a sweep on numbers: measures, references, warnings. Argument 1 is the folder of the scripts."""
 
 import json
 import math
@@ -7,11 +7,10 @@ import sys
 import tempfile
 import unittest
 
-import numpy as np
-
 sys.path.insert(0, sys.argv.pop(1))
-from talus_statistics import correlations, extrapolate, far_from  # noqa: E402
-from talus_study import Runs, history_of, measured  # noqa: E402
+from talus_results import History  # noqa: E402
+from talus_statistics import extrapolate  # noqa: E402
+from talus_study import Runs, measured  # noqa: E402
 
 
 class References(unittest.TestCase):
@@ -51,9 +50,8 @@ class Histories(unittest.TestCase):
     def test_have_measures(self):
         self.history()
         for measure, value in (("x_m", 2), ("x_m@0.5", 2), ("x_m@2", 2), ("x_m@1.5", 3), ("max:x_m", 4), ("time_s", 2), ("step", 9)):
-            self.assertEqual(measured(history_of(self.folder), self.folder, measure), value, measure)
-        with self.assertRaises(KeyError):
-            measured(history_of(self.folder), self.folder, "y_m")
+            self.assertEqual(measured(History(self.folder / "history.csv"), self.folder, measure), value, measure)
+        self.assertIsNone(measured(History(self.folder / "history.csv"), self.folder, "y_m"))
 
     def test_end_with_their_last_row_where_a_run_came_to_rest(self):
         for stage, kind, value in (("slide", "rest", 2), ("slide", "slow", 2), ("slide", "equilibrium", 2), ("fall", "rest", None), ("slide", "duration_over", None),
@@ -61,7 +59,7 @@ class Histories(unittest.TestCase):
             self.history("slide")
             events = [{"kind": "remark", "stage": "slide"}, {"kind": kind, "stage": stage}]
             (self.folder / "events.jsonl").write_text("".join(json.dumps(event) + "\n" for event in events))
-            self.assertEqual(measured(history_of(self.folder), self.folder, "x_m@30"), value, (stage, kind))
+            self.assertEqual(measured(History(self.folder / "history.csv"), self.folder, "x_m@30"), value, (stage, kind))
 
 
 class Warnings(unittest.TestCase):
@@ -71,26 +69,6 @@ class Warnings(unittest.TestCase):
                      {"folder": "run00002", "warnings": ["moves by 3 s"]}]
         self.assertEqual(runs.warnings(), [{"warning": "moves by -1.5e-3 m at (4, -2)", "runs": 1, "first_run": "run00000"},
                                            {"warning": "moves by 20 s", "runs": 2, "first_run": "run00000"}])
-
-
-class Correlation(unittest.TestCase):
-    def test_of_a_sample_is_that_of_its_pairs(self):
-        asked = [[1, 0.5, 0], [0.5, 1, 0], [0, 0, 1]]
-        [pair] = correlations(["a", "b", "c"], asked, [[-1, 1, -1, 1], [-1, 1, -1, 1.5], [-1, -1, 1, 1]])
-        self.assertEqual((pair["between"], pair["asked"], pair["samples"]), (["a", "b"], 0.5, 4))
-        self.assertAlmostEqual(pair["sample"], np.corrcoef([-1, 1, -1, 1], [-1, 1, -1, 1.5])[0, 1])
-        self.assertEqual(correlations(["a", "b"], asked, [[1], [2]]), [])
-        self.assertEqual(correlations([], [], []), [])
-
-    def test_is_far_in_one_sample_of_twenty(self):
-        """Of 2000 samples of pairs one in twenty is farther than two deviations, also of strongly correlated ones: 5 % +- 0.5 %, of which three are allowed."""
-        generator, samples, pairs = np.random.default_rng(5), 2000, 20
-        for asked in (0.0, 0.9):
-            x, y = generator.standard_normal((2, samples, pairs))
-            y = asked * x + math.sqrt(1 - asked**2) * y
-            far = sum(far_from(np.corrcoef(one, other)[0, 1], asked, pairs) for one, other in zip(x, y))
-            self.assertAlmostEqual(far / samples, 0.05, delta=0.015)
-        self.assertFalse(far_from(0.99, 0, 3))
 
 
 if __name__ == "__main__":
