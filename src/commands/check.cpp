@@ -11,7 +11,6 @@
 #include "commands/gallery.h"
 #include "commands/slice.h"
 #include "doubts/needs.h"
-#include "doubts/scales.h"
 #include "output/pictures.h"
 #include "scene/mesh_source.h"
 #include "scene/reader.h"
@@ -110,7 +109,10 @@ void print_costs(const Scene &scene, const Needs &n) {
   }
   line("memory", "%s resident; snapshots take about %s (%lld)", spoken_bytes(n.memory).c_str(),
        spoken_bytes(n.results).c_str(), n.snapshots);
-  if (n.particles() == 0) return;  // neither steps nor times are known
+  if (n.particles() == 0) {
+    line("", "stages add all soil, and none is there at the start: steps, times and scales are not known before a run");
+    return;
+  }
   const BodyReport &slowest = n.slowest_body().body;
   if (n.critical_step > slowest.critical_step)
     line("step", "critical %.4g s (2 / omega_max) of the filled mesh, %.2f times that of its fastest cell",
@@ -155,35 +157,20 @@ void print_scales(const Needs &n) {
   if (n.particles() == 0) return;
   const LayerNeeds &layer = n.layer;
   line("scales", "%.3g m deep at most, crossed by a wave in %s", layer.height, spoken(layer.transit).c_str());
-  if (n.gravity > 0) {
-    line("", "weight, %.3g kPa over M = %.3g MPa: strain of %.2g %% at most, settlement %.2g m",
-         layer.gravity_stress / 1e3, layer.modulus / 1e6, 100 * layer.gravity_strain, layer.settlement);
-    line("", "fall of its height: %s, and then %.2g of the wave speed",
-         spoken(scales::fall_time(layer.height, n.gravity)).c_str(),
-         scales::fall_speed(layer.height, n.gravity) / layer.wave_speed);
-  }
   for (const BodyNeeds &b : n.bodies)
     if (b.softening.slope > 0)
       line("",
-           "softening of %s: strength falls with plastic strain at %.2g of 2 G %s %.3g m; a slip surface longer than "
-           "%.3g m spreads without more load",
-           b.body.name.c_str(), b.softening.slope,
-           b.averaging_length > 0 ? "in bands of twice the averaging_length," : "in cells of",
-           b.averaging_length > 0 ? 2 * b.averaging_length : b.body.cell_size, b.softening.critical_length);
-  for (const HeatedBaseNeeds &b : n.heated_bases)
-    line("",
-         "base %s: friction falls to 1/e over a slip of %.3g m if undrained; in %s heat moves %.2g mm, pressure %.2g "
-         "mm",
-         b.name.c_str(), b.weakening_slip, spoken(b.time).c_str(), 1e3 * b.heat_way, 1e3 * b.water_way);
+           "softening of %s: strength falls with plastic strain at %.2g of 2 G; a slip surface longer than %.3g m "
+           "spreads "
+           "without more load",
+           b.body.name.c_str(), b.softening.slope, b.softening.critical_length);
   const Drainage &d = n.drainage;
   if (d.time == 0) return;
   line("drainage", "in %s: drained (T = c_v t / L2 > %g) for k above %.1g m/s, undrained (T < %g) for k below %.1g m/s",
-       spoken(d.time).c_str(), scales::drained_factor, d.drained_above, scales::undrained_factor, d.undrained_below);
-  if (d.drag_relaxation > 0)
-    line("", "pore water follows Darcy's law after k / (n g) = %s or less", spoken(d.drag_relaxation).c_str());
+       spoken(d.time).c_str(), drained_factor, d.drained_above, undrained_factor, d.undrained_below);
 }
 
-void print_page(const Scene &scene, const Needs &needs, const std::vector<std::string> &advice) {
+void print_page(const Scene &scene, const Needs &needs) {
   std::printf("%s\n%s, %s\n\n", scene.title.empty() ? scene.file.c_str() : scene.title.c_str(), name_of(scene.phases),
               scene.dimension == 2           ? "plane strain on triangles"
               : needs.mesh.one_element_slice ? "a slice of one layer of tetrahedra"
@@ -191,10 +178,10 @@ void print_page(const Scene &scene, const Needs &needs, const std::vector<std::s
   print_costs(scene, needs);
   print_scales(needs);
   const char *label = "advice";
-  for (const std::string &sentence : advice) paragraph(label, sentence), label = "";
+  for (const std::string &sentence : needs.advice) paragraph(label, sentence), label = "";
 }
 
-void print_json(const Scene &scene, const Needs &n, const std::vector<std::string> &advice) {
+void print_json(const Scene &scene, const Needs &n) {
   Json bodies = Json::array(), stages = Json::array();
   for (const BodyNeeds &b : n.bodies)
     bodies.push_back({{"name", b.body.name},
@@ -217,44 +204,38 @@ void print_json(const Scene &scene, const Needs &n, const std::vector<std::strin
                       {"steps", s.steps},
                       {"transits", s.transits},
                       {"run_time_s", s.run_time}});
-  const Json page{{"title", scene.title},
-                  {"dimension", scene.dimension},
-                  {"phases", name_of(scene.phases)},
-                  {"ranks", n.ranks},
-                  {"mesh",
-                   {{"cells", n.mesh.cells},
-                    {"nodes", n.mesh.nodes},
-                    {"smallest_altitude_m", n.mesh.smallest_altitude},
-                    {"smallest_quality", n.mesh.smallest_quality},
-                    {"mean_quality", n.mesh.mean_quality},
-                    {"one_element_slice", n.mesh.one_element_slice}}},
-                  {"particles", n.particles()},
-                  {"bodies", bodies},
-                  {"layer",
-                   {{"height_m", n.layer.height},
-                    {"modulus_Pa", n.layer.modulus},
-                    {"transit_s", n.layer.transit},
-                    {"gravity_stress_Pa", n.layer.gravity_stress},
-                    {"gravity_strain", n.layer.gravity_strain},
-                    {"settlement_m", n.layer.settlement}}},
-                  {"critical_step_s", n.critical_step},
-                  {"step_bound", n.step_bound},
-                  {"altitude_rule_s", n.altitude_rule},
-                  {"step_s", n.step},
-                  {"stages", stages},
-                  {"burst_steps", n.burst_steps},
-                  {"seconds_per_step", n.seconds_per_step},
-                  {"run_time_s", n.run_time()},
-                  {"longest_run_time_s", n.longest_run_time()},
-                  {"memory_B", n.memory},
-                  {"snapshots", n.snapshots},
-                  {"snapshots_B", n.results},
-                  {"drainage",
-                   {{"time_s", n.drainage.time},
-                    {"drained_above_m_s", n.drainage.drained_above},
-                    {"undrained_below_m_s", n.drainage.undrained_below},
-                    {"drag_relaxation_s", n.drainage.drag_relaxation}}},
-                  {"advice", advice}};
+  const Json page{
+      {"title", scene.title},
+      {"dimension", scene.dimension},
+      {"phases", name_of(scene.phases)},
+      {"ranks", n.ranks},
+      {"mesh",
+       {{"cells", n.mesh.cells},
+        {"nodes", n.mesh.nodes},
+        {"smallest_altitude_m", n.mesh.smallest_altitude},
+        {"smallest_quality", n.mesh.smallest_quality},
+        {"mean_quality", n.mesh.mean_quality},
+        {"one_element_slice", n.mesh.one_element_slice}}},
+      {"particles", n.particles()},
+      {"bodies", bodies},
+      {"layer", {{"height_m", n.layer.height}, {"modulus_Pa", n.layer.modulus}, {"transit_s", n.layer.transit}}},
+      {"critical_step_s", n.critical_step},
+      {"step_bound", n.step_bound},
+      {"altitude_rule_s", n.altitude_rule},
+      {"step_s", n.step},
+      {"stages", stages},
+      {"burst_steps", n.burst_steps},
+      {"seconds_per_step", n.seconds_per_step},
+      {"run_time_s", n.run_time()},
+      {"longest_run_time_s", n.longest_run_time()},
+      {"memory_B", n.memory},
+      {"snapshots", n.snapshots},
+      {"snapshots_B", n.results},
+      {"drainage",
+       {{"time_s", n.drainage.time},
+        {"drained_above_m_s", n.drainage.drained_above},
+        {"undrained_below_m_s", n.drainage.undrained_below}}},
+      {"advice", n.advice}};
   std::printf("%s\n", page.dump(1).c_str());
 }
 
@@ -283,12 +264,11 @@ int check(const CheckArguments &arguments) {
   Scene scene = read_scene(file, with_slice(arguments.slice, arguments.set));
   if (arguments.no_umat) refuse_umat(scene);
   const Needs needs = find_needs(scene, arguments.draws);
-  const std::vector<std::string> advice = advise(scene, needs);
   int rank;
   MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
   const int status = needs.burst_failure.empty() ? 0 : 1;  // as the run will end
   if (rank) return status;
-  arguments.json ? print_json(scene, needs, advice) : print_page(scene, needs, advice);
+  arguments.json ? print_json(scene, needs) : print_page(scene, needs);
   std::fflush(stdout);
   if (!arguments.draws) return status;
   if (!draw_model(needs.model, picture)) return 1;

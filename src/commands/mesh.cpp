@@ -52,8 +52,8 @@ void report_mesh(const MeshArguments &arguments, const LinearElastic &soil, doub
   for (const std::string &remark : report.remarks) std::printf("warning: %s\n", remark.c_str());
   double low = mesh.position[0][up], high = low;
   for (const auto &x : mesh.position) low = std::min(low, x[up]), high = std::max(high, x[up]);
-  if (const std::string sentence = unlikely_height(high - low); !sentence.empty())
-    std::printf("warning: %s\n", sentence.c_str());
+  if (const Relation height = unusual_height(high - low); height.holds)
+    std::printf("warning: %s\n", height.sentence.c_str());
 }
 
 int make_mesh(const MeshArguments &arguments) {

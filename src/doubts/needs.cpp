@@ -6,10 +6,9 @@
 #include <cmath>
 #include <numeric>
 
+#include "base/rounded.h"
 #include "doubts/doubts.h"
-#include "doubts/scales.h"
 #include "physics/boundary/boundary.h"
-#include "scene/body_source.h"
 #include "scene/boundary_source.h"
 #include "scene/output_source.h"
 #include "scene/reader.h"
@@ -24,47 +23,29 @@ namespace {
 constexpr int burst_length = 40;
 constexpr double longest_burst = 5;  // [s]
 
-BodyNeeds needs_of(const BodyReport &report, const Law &law, const BodySource &source) {
+BodyNeeds needs_of(const BodyReport &report, const Law &law) {
   BodyNeeds b{report, law};
-  b.averaging_length = source.averaging_length;
   b.density = report.mass / report.volume;
   b.wave_speed = std::sqrt(constrained_modulus(b.law) / b.density);
   b.shear_speed = std::sqrt(shear_modulus(b.law) / b.density);
   return b;
 }
 
-LayerNeeds layer_of(const Start &start, const std::vector<BodyNeeds> &bodies, double gravity) {
+LayerNeeds layer_of(const Start &start, const std::vector<BodyNeeds> &bodies) {
   const Scene &scene = start.scene;
   LayerNeeds layer;
-  double mass = 0, volume = 0, softness = 0, slowness = 0;
-  std::array<double, 3> low = bodies[0].body.low, high = bodies[0].body.high;
-  const double water = fluids_move(scene.phases) ? scene.water->density : 0;
-  for (std::size_t k = 0; k < bodies.size(); ++k) {
-    const BodyNeeds &b = bodies[k];
-    if (!(b.body.volume > 0)) continue;  // a stage adds it
-    mass += b.body.mass + scene.body[k].porosity * water * b.body.volume, volume += b.body.volume;
+  double volume = 0, softness = 0, slowness = 0;
+  for (const BodyNeeds &b : bodies) {
+    if (!b.there()) continue;
+    volume += b.body.volume;
     softness += b.body.volume / constrained_modulus(b.law), slowness += b.body.volume / b.wave_speed;
-    for (int d = 0; d < 3; ++d) low[d] = std::min(low[d], b.body.low[d]), high[d] = std::max(high[d], b.body.high[d]);
   }
-  for (int d = 0; d < scene.dimension; ++d) {
-    const double extent = high[d] - low[d];
-    layer.height =
-        gravity > 0 ? layer.height + extent * std::abs(scene.gravity[d]) / gravity : std::max(layer.height, extent);
-  }
-  const bool downwards = gravity > 0 && std::abs(scene.gravity[scene.vertical()]) == gravity;
-  if (downwards && start.depth > 0) layer.height = start.depth;
-  const double density = mass / volume;
-  layer.modulus = volume / softness, layer.wave_speed = volume / slowness;
-  layer.transit = scales::transit(layer.height, layer.wave_speed);
-  layer.gravity_stress = density * gravity * layer.height;
-  for (std::size_t k = 0; k < bodies.size(); ++k) {
-    const BodyNeeds &b = bodies[k];
-    const double above =
-        downwards ? start.depth_of(k, std::min(layer.height, high[start.up] - b.body.low[start.up])) : layer.height;
-    layer.gravity_strain =
-        std::max(layer.gravity_strain, scales::own_weight_strain(density, gravity, above, constrained_modulus(b.law)));
-  }
-  layer.settlement = scales::settlement(density, gravity, layer.height, layer.modulus);
+  const double gravity = scene.gravity_size();
+  for (int d = 0; d < scene.dimension; ++d)
+    layer.height = gravity > 0 ? layer.height + start.extent(d) * std::abs(scene.gravity[d]) / gravity
+                               : std::max(layer.height, start.extent(d));
+  if (gravity > 0 && std::abs(scene.gravity[start.up]) == gravity && start.depth > 0) layer.height = start.depth;
+  layer.modulus = volume / softness, layer.transit = layer.height * slowness / volume;
   return layer;
 }
 
@@ -111,82 +92,72 @@ void burst(AnySimulation &simulation, Scene &scene, Needs &needs) {
 
 Drainage drainage_of(const Scene &scene, const Needs &needs) {
   Drainage d;
-  if (needs.gravity == 0) return d;
-  for (std::size_t i = 0; i < needs.stages.size(); ++i)
+  for (std::size_t i = 0; i < needs.stages.size() && needs.gravity > 0; ++i)
     if (!scene.stage[i].is_static()) d.time += needs.stages[i].duration;
   if (d.time == 0) return d;
-  for (const Stage &stage : scene.stage) d.computed |= stage.water_flows();
-  const double water_weight = scene.water->density * needs.gravity;
-  const auto bound = [&](double factor) {
-    return scales::conductivity_at(factor, needs.layer.modulus, water_weight, d.time, needs.layer.height);
-  };
-  d.drained_above = bound(scales::drained_factor), d.undrained_below = bound(scales::undrained_factor);
-  for (const BodySource &body : scene.body)
-    if (body.porosity > 0)
-      d.drag_relaxation =
-          std::max(d.drag_relaxation, scales::drag_relaxation(d.drained_above, body.porosity, needs.gravity));
+  const double unit = scene.water->density * needs.gravity * needs.layer.height * needs.layer.height /
+                      (needs.layer.modulus * d.time);  // at which T = 1
+  d.drained_above = drained_factor * unit, d.undrained_below = undrained_factor * unit;
   return d;
-}
-
-std::vector<HeatedBaseNeeds> heated_bases_of(const Scene &scene, const Needs &needs) {
-  double time = 0;
-  for (const Stage &stage : scene.stage)
-    if (!stage.is_static()) time += stage.duration;
-  const BodyReport &soil = needs.bodies.front().body;
-  double middle[3];
-  for (int d = 0; d < 3; ++d) middle[d] = (soil.low[d] + soil.high[d]) / 2;
-  std::vector<HeatedBaseNeeds> bases;
-  for (const BoundarySource &source : scene.boundary) {
-    const Boundary kind = read_boundary(source.kind);
-    if (!kind.shear_zone) continue;
-    const auto way = [&](double diffusivity) { return std::sqrt(4 * diffusivity * time); };
-    bases.push_back({source.name,
-                     kind.shear_zone->weakening_slip(kind.friction_coefficient(middle[0], middle[1], middle[2], 0, 0)),
-                     way(kind.shear_zone->thermal_diffusivity()), way(kind.shear_zone->hydraulic_diffusivity()), time});
-  }
-  return bases;
 }
 
 /// Tries each function of time over the stages, and over a box around the soil if it knows the place too. Those whose
 /// value their key does not admit remember it. Functions of the place alone have been used where they are needed.
-void sample_functions(const Scene &scene, const std::vector<BodyReport> &bodies) {
+void sample_functions(const Start &start) {
   constexpr int times = 100, places = 4;  // intervals
-  double end = 0;
-  for (const Stage &stage : scene.stage)
-    if (!stage.hold_loads) end += stage.duration;
-  std::array<double, 3> low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
-  for (const BodyReport &body : bodies)
-    for (int d = 0; d < 3; ++d) low[d] = std::min(low[d], body.low[d]), high[d] = std::max(high[d], body.high[d]);
-  scene.root->each_expression([&](const Function &function) {
-    const auto intervals = [&](const char *variable, int most) { return function.uses(variable) ? most : 0; };
-    const int n[3] = {intervals("x", places), intervals("y", places), intervals("z", places)};
-    const int last = intervals("t", times), slips = intervals("slip", places);
-    if (last == 0 && slips == 0) return;
-    const auto at = [&](int d, int i) { return low[d] + (high[d] - low[d]) * i / std::max(1, n[d]); };
-    for (int k = 0; k <= last; ++k)
-      for (int a = 0; a <= n[0]; ++a)
-        for (int b = 0; b <= n[1]; ++b)
-          for (int c = 0; c <= n[2]; ++c)
-            for (int s = 0; s <= slips; ++s)  // up to the width of the soil, most of them small
-              (void)function(at(0, a), at(1, b), at(2, c), end * k / std::max(1, last), high[1],
-                             s > 0 ? (high[0] - low[0]) * std::pow(0.1, places - s) : 0);
+  const double end = end_of_loads(start.scene);
+  if (start.height() < 0) return;  // later stages add all soil
+  start.scene.root->each_expression([&](const Function &function) {
+    const auto points = [&](const char *variable, int most) { return function.uses(variable) ? most + 1 : 1; };
+    const int n[] = {points("x", places), points("y", places), points("z", places), points("slip", places),
+                     points("t", times)};
+    if (n[3] * n[4] == 1) return;
+    for (int k = 0; k < n[0] * n[1] * n[2] * n[3] * n[4]; ++k) {
+      double share[5];  // of the way along each
+      for (int d = 0, rest = k; d < 5; rest /= n[d++]) share[d] = rest % n[d] / std::max(1., n[d] - 1.);
+      const auto at = [&](int d) { return start.low[d] + start.extent(d) * share[d]; };
+      // slips up to the width of the soil, most of them small
+      const double slip = share[3] > 0 ? start.extent(0) * std::pow(0.1, places * (1 - share[3])) : 0;
+      (void)function(at(0), at(1), at(2), end * share[4], start.high[1], slip);
+    }
   });
 }
 
 /// Asks the friction of each base, and the water table that drained soil meets there, for their values where soil lies
 /// and downhill of it. Values that a key does not admit, as beyond a grid, are remembered by the scene. Collective.
 void try_ground_downhill(const Scene &scene, const AnySimulation &simulation) {
+  const bool drained = scene.phases == PhaseModel::drained && scene.water->table.given();
   for (const BoundarySource &source : scene.boundary) {
     const Boundary kind = read_boundary(source.kind);
-    const std::vector<std::array<double, 3>> places =
-        simulation.downhill(source.group.empty() ? std::vector{source.name} : source.group);
-    for (const auto &value : {kind.friction_coefficient, kind.adhesion})
-      for (const auto &[x, y, z] : places)
+    for (const auto &[x, y, z] : simulation.downhill(source.group.empty() ? std::vector{source.name} : source.group)) {
+      for (const auto &value : {kind.friction_coefficient, kind.adhesion})
         if (value) (void)value(x, y, z, 0, 0);
-    const WaterTable &table = scene.water->table;
-    for (const auto &[x, y, z] : places)
-      if (kind.friction_coefficient && table.given() && scene.phases == PhaseModel::drained) (void)table.at(x, y, z);
+      if (kind.friction_coefficient && drained) (void)scene.water->table.at(x, y, z);
+    }
   }
+}
+
+/// The most important first. Functions are tried before a run breaks off by them.
+void advise(const Start &start, const AnySimulation &simulation, Needs &needs) {
+  const Scene &scene = start.scene;
+  std::vector<std::string> &all = needs.advice;
+  if (!needs.burst_failure.empty())
+    all.push_back("The run breaks off in its first steps: " + needs.burst_failure + ".");
+  const auto add = [&all](const std::vector<std::string> &more) { all.insert(all.end(), more.begin(), more.end()); };
+  add(needs.mesh.remarks);
+  const char *where =
+      ". A run ends where it needs such a value; the function was tried all over the soil and the stages.";
+  if (!scene.function_fault().empty()) where = "";  // the burst has broken off by it
+  if (*where) sample_functions(start);
+  if (scene.function_fault().empty()) {
+    where = ". That place lies downhill of the soil: the run ends if a slide comes so far.";
+    try_ground_downhill(scene, simulation);
+  }
+  if (const std::string fault = scene.function_fault(); *where && !fault.empty()) all.push_back(fault + where);
+  add(doubts_about(start));
+  Doubts doubts(scene);
+  doubt_before_run(start, needs.drainage, doubts);
+  add(doubts.sentences());
 }
 
 }  // namespace
@@ -218,33 +189,20 @@ Needs find_needs(Scene &scene, bool with_model) {
   const std::vector<BodyReport> &reports = start.bodies;
   const std::vector<Softening> softening = softening_of(scene, start.laws, reports);
   for (std::size_t b = 0; b < reports.size(); ++b) {
-    needs.bodies.push_back(needs_of(reports[b], start.laws[b], scene.body[b]));
+    needs.bodies.push_back(needs_of(reports[b], start.laws[b]));
     needs.bodies[b].softening = softening[b];
     fastest = std::max(fastest, needs.bodies[b].wave_speed);
     if (reports[b].critical_step < reports[needs.slowest].critical_step) needs.slowest = static_cast<int>(b);
   }
-  needs.layer = layer_of(start, needs.bodies, needs.gravity);
-  needs.doubts = doubts_about(start);
-  Doubts cells(scene);  // which a run does not repeat
-  doubt_cells(start, cells);
-  needs.doubts.insert(needs.doubts.end(), cells.sentences().begin(), cells.sentences().end());
+  needs.layer = layer_of(start, needs.bodies);
   const StepRule rule = step_rule(read_integrator(scene.integrator, fluids_move(scene.phases)));
   needs.critical_step = simulation->critical_step();
   needs.step_bound = simulation->step_bound();
   needs.altitude_rule = needs.mesh.smallest_altitude / fastest;
   needs.fixed_step = rule.fixed > 0;
-  needs.usual_step = rule.share * needs.critical_step;
-  needs.step = needs.fixed_step ? rule.fixed : needs.usual_step;
+  needs.step = needs.fixed_step ? rule.fixed : rule.share * needs.critical_step;
   MPI_Comm_size(PETSC_COMM_WORLD, &needs.ranks);
   burst(*simulation, scene, needs);
-  if (scene.function_fault().empty()) {  // else the burst has broken off by it
-    sample_functions(scene, reports);
-    needs.function_fault = scene.function_fault();
-  }
-  if (scene.function_fault().empty()) {
-    try_ground_downhill(scene, *simulation);
-    needs.downhill_fault = scene.function_fault();
-  }
   needs.snapshots = 1;
   for (const Stage &stage : scene.stage) {
     if (stage.is_static()) {  // by finite elements: no waves, no steps of the motion
@@ -260,9 +218,17 @@ Needs find_needs(Scene &scene, bool with_model) {
         scene.output->interval > 0 ? static_cast<long long>(std::ceil(stage.duration / scene.output->interval)) : 1;
   }
   needs.results *= static_cast<double>(needs.snapshots);
-  needs.heated_bases = heated_bases_of(scene, needs);
   needs.drainage = drainage_of(scene, needs);
+  advise(start, *simulation, needs);
   return needs;
+}
+
+std::string spoken(double seconds) {
+  const std::pair<double, const char *> units[] = {{86400, "d"}, {3600, "h"},  {60, "min"},
+                                                   {1, "s"},     {1e-3, "ms"}, {1e-6, "us"}};
+  for (const auto &[size, name] : units)
+    if (seconds >= size) return rounded(seconds / size, 3) + " " + name;
+  return rounded(seconds, 3) + " s";
 }
 
 }  // namespace talus

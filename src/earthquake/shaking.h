@@ -4,9 +4,10 @@
 #include <vector>
 
 #include "earthquake/ground_motion.h"
-#include "scene/earthquake_source.h"
 
 namespace talus {
+
+struct EarthquakeSource;
 
 class GroundShaking {
  public:

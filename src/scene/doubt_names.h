@@ -19,11 +19,11 @@ inline constexpr std::string_view doubt_names =
     " residual_saturation rest_speed saturated_unit_weight scale seismic_coefficient shape shape_factor shear_modulus"
     " smallest_step solid_density static_friction step_error storage suction suction_cohesion swelling_slope"
     " tension_cutoff thermal_conductivity thermal_pressurisation thickness tolerance unit_weight velocity_tolerance"
-    " viscosity void_ratio volume_cap yield_stress young_modulus brittle cavitation changing_table coarse_cells"
-    " drift dry_boundary dry_pond early_suction excess_alone faces_left film flooding free_base free_side gravity_ramp"
-    " idle_earthquake lasting_rain late_load mesh_end mesh_units nodal_locking open_water plastic_strain pond pore_flow"
-    " pore_volume_cap relative_permeability sealed_ground soft_water steep_face stiffness strength thin_body"
-    " undrained_stage undrained_strength void water_table ";
+    " viscosity void_ratio volume_cap yield_stress young_modulus base_slips brittle cavitation changing_table"
+    " coarse_cells drainage drift dry_boundary dry_pond early_suction excess_alone faces_left film"
+    " free_side gravity_at_once gravity_ramp idle_earthquake late_load mesh_end mesh_units"
+    " open_water pore_flow relative_permeability sealed_ground short_waves soft_water steep_face"
+    " strength thin_body undrained_stage void water_table ";
 
 constexpr bool is_doubt_name(std::string_view name) {
   return doubt_names.find(" " + std::string(name) + " ") != std::string_view::npos;

@@ -49,44 +49,31 @@ class MeshEnds {
 
  private:
   static constexpr int planes = 2 * dim;  ///< of the box, two of each axis
-  using OfPlanes = std::array<double, planes>;
 
   void find_faces();
   int bottom() const { return 2 * world_.scene.vertical(); }
-  /// Plastic strain in the soil beside ends of the mesh.
-  struct Sheared {
-    double mean = 0;    ///< of all soil, each part weighted with its own strain
-    OfPlanes beside{};  ///< each plane, where it is largest
-    OfPlanes within{};  ///< this distance of it [m]
-  };
-  /// `size` of the largest cell at each plane [m], 0: does not count. Collective.
-  Sheared sheared(const Soil &soil, const OfPlanes &size, bool mechanism) const;
-  struct Reached {
-    bool below, cuts;             ///< the bottom; soil that lay there has moved, or else has sheared near it
-    std::string place;            ///< "at the group rear"
-    double moved, of;             ///< there, and at most [m]
-    double strain, mean, within;  ///< near it, of what has sheared, and how near [m]
-    std::string advice;
-  };
-  std::vector<Reached> reached(const Soil &soil, bool mechanism) const;
+  /// How far a place lies along the outward normal of a plane [m].
+  static double outward(int plane, const Vec<dim> &x) { return plane % 2 ? x[plane / 2] : -x[plane / 2]; }
+  std::string name_of(int plane) const {  // "x = 3 m"
+    return std::string(1, "xyz"[plane / 2]) + " = " + rounded(plane % 2 ? 0 - end_[plane] : end_[plane]) + " m";
+  }
+  bool acknowledged() const { return world_.scene.acknowledges("mesh_end"); }
   std::vector<std::string> sentences(const Soil &soil, bool mechanism) const;
+  /// Mean plastic strain of the soil within a distance of a plane [m], in the part of the plane, as long as this
+  /// distance, where it is largest. Zero at a bottom that soil does not cover, or covers less than `thin` somewhere
+  /// [m]: it is that of a slope on firm ground. Collective.
+  double shear_beside(const Soil &soil, int plane, double within, double thin) const;
 
   struct Face {
     int cell, plane;
-    int group;     ///< number among all names, or -1
     double depth;  ///< of its cell [m]
     bool slips;    ///< soil can move along it: a roller, or no boundary
-  };
-  struct Found {
-    long long id = -1;  ///< particle with the smallest number there; -1: none
-    int group = -1;
-    double place[3]{};
   };
 
   const World<dim> &world_;
   std::vector<Face> faces_;  ///< by cell
   std::vector<char> told_;   ///< of each plane
-  double end_[2 * dim]{};    ///< of each plane, minus its place along the outward normal [m]
+  double end_[planes]{};     ///< of each plane, minus its place along the outward normal [m]
 };
 
 }  // namespace talus

@@ -25,47 +25,26 @@ double sum_of_ranks(MPI_Comm comm, double mine) {
   return mine;
 }
 
-/// Values of all ranks, none negative, that weigh something. No rank has those of others: values are found by
-/// bisection, which ends since doubles from 0 on are ordered as their bits are.
-class Distribution {
- public:
-  Distribution(MPI_Comm comm, std::vector<std::pair<double, double>> value_and_weight)
-      : comm_(comm), mine_(std::move(value_and_weight)) {
-    std::ranges::sort(mine_);
-    double sum = 0;
-    for (auto &[value, weight] : mine_) weight = sum += weight;
-    total_ = sum_of_ranks(comm, sum);
-  }
-  double total() const { return total_; }
-  /// The least value that has this weight together with all below it; the largest, where all have less.
-  double at(double weight) const {
-    std::uint64_t low = 0, high = std::bit_cast<std::uint64_t>(mine_.empty() ? 0. : mine_.back().first);
-    check_mpi(MPI_Allreduce(MPI_IN_PLACE, &high, 1, MPI_UINT64_T, MPI_MAX, comm_), "finding the largest motion");
-    while (low < high) {
-      const std::uint64_t middle = low + (high - low) / 2;
-      if (sum_of_ranks(comm_, weight_up_to(std::bit_cast<double>(middle))) >= weight)
-        high = middle;
-      else
-        low = middle + 1;
-    }
-    return std::bit_cast<double>(low);
-  }
+/// A value, not negative, and what it weighs.
+using Weighed = std::vector<std::pair<double, double>>;
 
- private:
-  double weight_up_to(double value) const {
-    const auto above = std::ranges::upper_bound(mine_, value, {}, &std::pair<double, double>::first);
-    return above == mine_.begin() ? 0 : std::prev(above)->second;
+/// The least value of all ranks that has this weight together with all below it; the largest, where all have less. No
+/// rank has those of others: it is found by bisection, which ends since doubles from 0 on are ordered as their bits
+/// are.
+double value_at(MPI_Comm comm, const Weighed &mine, double weight) {
+  std::uint64_t low = 0, high = 0;
+  for (const auto &[value, w] : mine) high = std::max(high, std::bit_cast<std::uint64_t>(value));
+  check_mpi(MPI_Allreduce(MPI_IN_PLACE, &high, 1, MPI_UINT64_T, MPI_MAX, comm), "finding the largest motion");
+  while (low < high) {
+    const std::uint64_t middle = low + (high - low) / 2;
+    double below = 0;
+    for (const auto &[value, w] : mine) below += value <= std::bit_cast<double>(middle) ? w : 0;
+    if (sum_of_ranks(comm, below) >= weight)
+      high = middle;
+    else
+      low = middle + 1;
   }
-
-  MPI_Comm comm_;
-  std::vector<std::pair<double, double>> mine_;  ///< sorted, with the sum of the weights up to each
-  double total_;
-};
-
-/// Quantile of values that weigh 1 each, linear between them.
-double quantile(const Distribution &of, double share) {
-  const double place = share * (of.total() - 1), below = std::floor(place), low = of.at(below + 1);
-  return low + (place - below) * (of.at(below + 2) - low);
+  return std::bit_cast<double>(low);
 }
 
 }  // namespace
@@ -82,31 +61,30 @@ std::optional<MotionLeft> still_moving(MPI_Comm comm, const Snapshot &state) {
   const auto displacement = column("displacement"), velocity = column("velocity"), mass = column("mass"),
              volume = column("volume"), none = state.columns.end();
   if (displacement == none || velocity == none || mass == none || volume == none) return {};  // on all ranks
-  const std::size_t count = state.id.size();
-  std::vector<std::pair<double, double>> ways, speeds;
-  for (std::size_t i = 0; i < count; ++i) ways.emplace_back(size_of(*displacement, i), mass->values[i]);
-  const double particles = sum_of_ranks(comm, static_cast<double>(count)),
-               space = sum_of_ranks(comm, std::accumulate(volume->values.begin(), volume->values.end(), 0.));
-  if (particles == 0) return {};
-  const Distribution displacements(comm, ways);
-  double moved = 0, number = 0;
-  for (std::size_t i = 0; i < count; ++i)
-    if (ways[i].first > std::pow(volume->values[i], 1. / displacement->components)) moved += mass->values[i], ++number;
-  moved = sum_of_ranks(comm, moved), number = sum_of_ranks(comm, number);
-  double single = (1 - nearly_all) * displacements.total();
-  if (number >= several) single = std::min(single, of_moved * moved);
-  const double spacing = std::pow(space / particles, 1. / displacement->components),
-               largest = displacements.at(displacements.total() - single);
+  Weighed ways, speeds;
+  double all[5]{};  // particles, volume, mass; mass and number of what moved by more than its own size
+  for (std::size_t i = 0; i < state.id.size(); ++i) {
+    const double way = size_of(*displacement, i), m = mass->values[i], v = volume->values[i];
+    ways.emplace_back(way, m), ++all[0], all[1] += v, all[2] += m;
+    if (way > std::pow(v, 1. / displacement->components)) all[3] += m, ++all[4];
+  }
+  for (double &sum : all) sum = sum_of_ranks(comm, sum);
+  if (all[0] == 0) return {};
+  double single = (1 - nearly_all) * all[2];
+  if (all[4] >= several) single = std::min(single, of_moved * all[3]);
+  const double spacing = std::pow(all[1] / all[0], 1. / displacement->components),
+               largest = value_at(comm, ways, all[2] - single);
   if (largest <= slides_least * spacing) return {};
-  double slid = 0, fast = 0;
-  for (std::size_t i = 0; i < count; ++i) {
+  double slid = 0, fast = 0, number = 0;
+  for (std::size_t i = 0; i < state.id.size(); ++i) {
     if (ways[i].first <= slides_share * largest) continue;
     const double speed = size_of(*velocity, i);
-    speeds.emplace_back(speed, 1), slid += mass->values[i], fast += speed > slow ? mass->values[i] : 0;
+    speeds.emplace_back(speed, 1), slid += ways[i].second, ++number, fast += speed > slow ? ways[i].second : 0;
   }
-  slid = sum_of_ranks(comm, slid), fast = sum_of_ranks(comm, fast);
+  slid = sum_of_ranks(comm, slid), fast = sum_of_ranks(comm, fast), number = sum_of_ranks(comm, number);
   if (fast <= restless * slid) return {};
-  return MotionLeft{fast / slid, quantile(Distribution(comm, speeds), nearly_all)};
+  const double rank = nearly_all * (number - 1), below = std::floor(rank), low = value_at(comm, speeds, below + 1);
+  return MotionLeft{fast / slid, low + (rank - below) * (value_at(comm, speeds, below + 2) - low)};
 }
 
 }  // namespace talus

@@ -18,14 +18,12 @@ TEST(Check, KnowsParticlesMassAndLayer) {
   EXPECT_TRUE(page.says("steps: the fewest in that time, all as long as the first one")) << page.output;
   EXPECT_NEAR(number(ending, "height_m"), 0.5, 1e-12);
   const double modulus = 1e6 * 0.7 / (1.3 * 0.4);  // E (1 - nu) / ((1 + nu) (1 - 2 nu))
-  EXPECT_NEAR(number(ending, "gravity_strain"), 2000 * 9.81 * 0.5 / modulus, 1e-9);
   EXPECT_NEAR(number(ending, "wave_speed_m_s"), std::sqrt(modulus / 2000), 1e-9);
   EXPECT_NEAR(number(ending, "step_s"), 0.6 * number(ending, "critical_step_s"), 1e-15);
   EXPECT_GT(number(ending, "burst_steps"), 10);
 }
 
-/// Soft soil of which there is little does not carry the weight of all: a tenth of the height with a hundredth of the
-/// stiffness lies on top here. Full pores weigh too.
+/// Bodies bear the weight in series: a tenth of the height with a hundredth of the stiffness lies on top here.
 TEST(Check, StacksBodiesOfALayer) {
   const Folder folder;
   const std::string soft =
@@ -37,10 +35,8 @@ TEST(Check, StacksBodiesOfALayer) {
                "interface0,1,0.45\nregion_sand,0.5,0.25\nregion_soft,0.5,0.475\n");
   const Ending ending = talus(folder, {"check", "scene.toml", "--json"});
   ASSERT_EQ(ending.status, 0) << ending.output;
-  const double modulus = 1e6 * 0.7 / (1.3 * 0.4), weight = 2000 * 9.81;
-  const double stack = modulus / (0.9 + 0.1 * 100);
-  EXPECT_NEAR(number(ending, "settlement_m"), weight * 0.5 * 0.5 / 2 / stack, 1e-9);
-  EXPECT_NEAR(number(ending, "gravity_strain"), weight * 0.05 / (modulus / 100), 1e-9);
+  const double modulus = 1e6 * 0.7 / (1.3 * 0.4), stack = modulus / (0.9 + 0.1 * 100);
+  EXPECT_NEAR(number(ending, "modulus_Pa"), stack, 1e-9 * stack);
   EXPECT_NEAR(number(ending, "transit_s"), 0.5 * (0.9 + 0.1 * 10) / std::sqrt(modulus / 2000), 1e-9);
 }
 
@@ -107,7 +103,7 @@ TEST(Check, KnowsStagesByFiniteElements) {
   const Folder folder;
   const Ending ending = check(folder, {"stage.0.kind=quasi_static"});
   EXPECT_EQ(number(ending, "run_time_s"), 0);
-  EXPECT_FALSE(ending.says("Gravity is applied at once")) << ending.output;
+  EXPECT_FALSE(ending.says("gravity is applied at once")) << ending.output;
 }
 
 /// Soil that a stage adds has no particles yet: neither of it nor of a scene without other soil are numbers invented.
@@ -128,7 +124,7 @@ TEST(Check, SaysWhichSoilAStageAdds) {
     ASSERT_EQ(ending.status, 0) << ending.output;
     EXPECT_EQ(ending.count("added by a stage, not there at the start"), added) << ending.output;
     EXPECT_FALSE(ending.says("nan") || ending.says("-2147483648") || ending.says(" inf")) << ending.output;
-    EXPECT_EQ(ending.says("Stages add all soil"), !known) << ending.output;
+    EXPECT_EQ(ending.says("stages add all soil"), !known) << ending.output;
     EXPECT_EQ(ending.says("crossed by a wave"), known) << ending.output;
   }
 }
@@ -149,12 +145,10 @@ TEST(Check, TriesFunctionsOverStagesAndPlaces) {
                   .says("breaks off in its first steps: --set: boundary.base.velocity.1"));
 }
 
-TEST(Check, SaysHowStagesTakeABaseThatRemembersSlip) {
+TEST(Check, DoubtsABaseThatSlipsBeforeTheLoads) {
   const Folder folder;
   const std::string weakens = "boundary.base={kind='friction', friction_angle='30 - slip'}";
   EXPECT_FALSE(check(folder, {weakens}).says("boundary.base"));
-  EXPECT_TRUE(check(folder, {weakens, "stage.0.kind=quasi_static"})
-                  .says("Stage fall takes boundary.base at a slip of 0 and cold"));
   EXPECT_TRUE(check(folder, {weakens, "stage.0.gravity_ramp=0.01"}).says("counts slip and heat; softening = false"));
   EXPECT_TRUE(check(folder, {"boundary.base={kind='friction', friction_angle='30 - 100 * slip'}"})
                   .says("must be a number from 0 to 89 deg; it is -70 deg at slip = 1 m"));
@@ -216,7 +210,8 @@ duration = 1
   EXPECT_FALSE(halved.says("on the way")) << "of 4 m they are smaller than the slide is thick: " << halved.output;
   const double exact =
       1 / std::hypot(std::cos(26.565 * std::acos(-1) / 180) / 6, std::sin(26.565 * std::acos(-1) / 180) / 30);
-  EXPECT_NEAR(number(whole, "height_m"), exact, 3) << "to a cell; elevations range over 27 m";
+  EXPECT_NEAR(number(whole, "height_m"), 4. / 3 * exact, 4)
+      << "twice the mean of a bowl, to a cell; elevations range over 27 m";
   EXPECT_GE(number(whole, "longest_run_time_s"), number(whole, "run_time_s"));
   EXPECT_FALSE(whole.says("downhill"));
   const Ending part = look(20, 12);

@@ -1,4 +1,4 @@
-// What `talus check` says of soil that softens, and of flow far from the normal.
+// What `talus check` says of soil that softens.
 #include <sstream>
 
 #include "check/check.h"
@@ -27,42 +27,6 @@ TEST(Check, KnowsTheSlipSurfaceThatSpreads) {
   EXPECT_NEAR(number(check(folder, with(softening, "body.sand.shape_factor=50")), "critical_slip_length_m"), 2 * length,
               1e-9 * length);
   EXPECT_EQ(number(check(folder, {}), "critical_slip_length_m"), 0);
-}
-
-TEST(Check, WarnsOfFlowFarFromTheNormal) {
-  const Folder folder;
-  const char *advice = "a load at failure is then not unique";
-  const auto with_angles = [&](const char *phi, const char *psi) {
-    return with(with(softening, std::string("body.sand.friction_angle=") + phi),
-                std::string("body.sand.dilation_angle=") + psi);
-  };
-  EXPECT_TRUE(check(folder, with_angles("36", "5")).says(advice));
-  EXPECT_TRUE(check(folder, with_angles("36", "5")).says("exceeds its dilation angle by 31 degrees"));
-  EXPECT_FALSE(check(folder, with_angles("34", "5")).says(advice));
-  EXPECT_FALSE(check(folder, {"body.sand.friction_angle=36"}).says(advice)) << "does not soften";
-}
-
-// tan(phi*) / tan(phi) = cos 36 cos 5 / (1 - sin 36 sin 5) = 0.849
-TEST(Check, SaysWhatFlowFarFromTheNormalDoesToLoadsAndFactors) {
-  const Folder folder;
-  const char *load = "finds no more equilibrium is not unique",
-             *factor = "a lower estimate, the strength of Davis (1968), 0.85 of its shear strength";
-  const std::string gravity = "{name='gravity', kind='quasi_static', duration=1}";
-  const auto angles = [](const char *phi, const std::string &last) {
-    return std::vector<std::string>{std::string("body.sand.friction_angle=") + phi, "body.sand.dilation_angle=5", last};
-  };
-  const std::string loads = "stage=[" + gravity + ", {name='load', kind='quasi_static', duration=1}]";
-  EXPECT_TRUE(check(folder, angles("36", loads))
-                  .says("exceeds its dilation angle by 31 degrees: the load at which stage load finds"));
-  EXPECT_FALSE(check(folder, angles("34", loads)).says(load));
-  EXPECT_FALSE(check(folder, angles("36", "stage=[" + gravity + ", {name='slide', duration=1}]")).says(load))
-      << "asks for no load";
-  EXPECT_FALSE(check(folder, angles("36", loads)).says(factor)) << "asks for no factor";
-  EXPECT_TRUE(check(folder, angles("36", "factor_of_safety.mechanisms=2")).says(factor));
-  EXPECT_FALSE(check(folder, angles("34", "factor_of_safety.mechanisms=2")).says("strength of Davis"));
-  const Ending softens =
-      check(folder, with(with(with(softening, "body.sand.friction_angle=36"), "body.sand.dilation_angle=5"), loads));
-  EXPECT_FALSE(softens.says(load)) << "said of its softening";
 }
 
 // the height is 0.5 m: a surface of 1.5 times that, 0.75 m, spreads at a shape factor of 475

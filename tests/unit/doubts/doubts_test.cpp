@@ -6,39 +6,12 @@
 
 #include <cmath>
 
+#include "doubts/needs.h"
 #include "scene/scene.h"
 #include "simulation/scene_keys.h"
 
 namespace talus {
 namespace {
-
-/// Of 200 particles of equal volume that each rank has of each of two bodies, `sheared` of the first have a plastic
-/// strain of 12, on the last rank one of them of 31.
-std::vector<std::string> doubts(int sheared) {
-  int rank, ranks;
-  MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
-  MPI_Comm_size(PETSC_COMM_WORLD, &ranks);
-  Snapshot state;
-  Column strain{"plastic_strain", "", "", 1, {}}, volume{"volume", "m3", "", 1, {}};
-  for (int body = 0; body < 2; ++body)
-    for (int i = 0; i < 200; ++i) {
-      state.body.push_back(body);
-      volume.values.push_back(0.1);
-      strain.values.push_back(body == 1 ? 9.9 : i >= sheared ? 0.1 : i == 0 && rank == ranks - 1 ? 31 : 12);
-    }
-  state.columns = {strain, volume};
-  std::vector<BodyReport> bodies(2);
-  bodies[0].name = "clay", bodies[1].name = "sand";
-  return doubts_about_end(Scene(), PETSC_COMM_WORLD, bodies, state);
-}
-
-TEST(Doubts, StrainsOfMoreThanAHundredthOfABodyAreDoubted) {
-  EXPECT_TRUE(doubts(0).empty());
-  EXPECT_TRUE(doubts(1).empty()) << "single particles";
-  const std::vector<std::string> found = doubts(6);
-  ASSERT_EQ(found.size(), 1u);
-  EXPECT_EQ(found[0].find("3 % of body.clay has a plastic strain above 1000 %, up to 3100 %"), 0u) << found[0];
-}
 
 TEST(Doubts, TensionOfMoreThanAnAtmosphereIsDoubted) {
   Snapshot state;
@@ -80,7 +53,7 @@ std::vector<std::string> doubts_about_heap(double slope, double size, double coh
   heap.high = {run + 4, 3, 0};
   heap.strength.friction_angle = {0.6, 0.6}, heap.strength.cohesion = {cohesion, cohesion};
   Doubts doubts(scene);
-  doubt_cells(Start(scene, {heap}, surface), doubts);
+  doubt_before_run(Start(scene, {heap}, surface), {}, doubts);
   return doubts.sentences();
 }
 
@@ -124,13 +97,14 @@ TEST(Doubts, HaveAKnownName) {
 
 TEST(Doubts, AreSilentWhereTheSceneAcknowledgesThem) {
   Scene scene;
-  scene.acknowledge = {"pond"};
+  scene.acknowledge = {"film"};
   Doubts doubts(scene);
-  doubts.say("pond", "meant");
-  doubts.say("open_water", "not meant");
-  doubts.say_unusual("stiffness", "a ratio", 3, one, {5, 10});
+  doubts.say({{"film", true, "meant"},
+              {"open_water", true, "not meant"},
+              {"void", false, "not so"},
+              unusual("strength", "a ratio", 3, one, {5, 10})});
   EXPECT_EQ(doubts.sentences(),
-            (std::vector<std::string>{"not meant [open_water]", "a ratio = 3; usual 5 to 10 [stiffness]"}));
+            (std::vector<std::string>{"not meant [open_water]", "a ratio = 3; usual 5 to 10 [strength]"}));
 }
 
 }  // namespace

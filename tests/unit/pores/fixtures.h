@@ -3,18 +3,11 @@
 #include <string>
 
 #include "physics/pores/soil_pores.h"
-#include "scene/body_source.h"
-#include "scene/reader.h"
 
 namespace talus {
 
-inline BodySource body_of(const std::string &text) {
-  BodySource body;
-  TableReader::from_text("law = \"linear_elastic\"\nporosity = 0.35\n" + text, "slope.toml").fill(body);
-  return body;
-}
-
-inline SoilPores soil_of(const std::string &text) { return SoilPores(body_of(text), 1e4, 1e-3); }
+/// The pores of a body with these keys and a porosity of 0.35, in water of 10 kN/m3.
+SoilPores soil_of(const std::string &text);
 
 inline const std::string silt =
     "permeability = \"1e-12 m2\"\n[retention]\ncurve = \"van_genuchten\"\nreference_suction = \"100 kPa\"\nshape = "

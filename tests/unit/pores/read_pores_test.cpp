@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "fixtures.h"
+#include "scene/reader.h"
 
 namespace talus {
 namespace {
