@@ -36,6 +36,15 @@ class CellStress {
     }
     return force;
   }
+  /// Force per area on soil in a cell through a face of outward normal n: sigma n [Pa].
+  Vec<dim> traction(int cell, const Vec<dim> &n) const {
+    const auto &s = mean_[cell];
+    if constexpr (dim == 2)
+      return {s[0] * n[0] + s[3] * n[1], s[3] * n[0] + s[1] * n[1]};
+    else
+      return {s[0] * n[0] + s[3] * n[1] + s[5] * n[2], s[3] * n[0] + s[1] * n[1] + s[4] * n[2],
+              s[5] * n[0] + s[4] * n[1] + s[2] * n[2]};
+  }
 
  private:
   std::vector<std::array<double, stress_size<dim>>> mean_;  ///< [cell] [Pa]

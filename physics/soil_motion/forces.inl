@@ -51,6 +51,8 @@ PetscErrorCode SoilMotion<dim, Phases>::total_force(double t, const State &state
   }
   PetscCall(grid_.sum(force_[0].data(), dim));
   conditions_.add_reactions(force_.data());
+  PetscCall(conditions_.add_columns(
+      grid_, [this](int cell, const Vec<dim> &n) { return stress_.traction(cell, n); }, force_.data()));
   const double *extra = extra_mass();
   const Vec<dim> gravity = loading.gravity_at(t);
   for (int i = 0; i < nodes; ++i) {

@@ -245,7 +245,7 @@ PetscErrorCode SoilMotion<dim, Phases>::balance(double t, Balance *sums) {
     return std::sqrt(s);
   };
   for (int i = 0; i < grid_.node_count(); ++i) {
-    if (!mesh_.owned[grid_.mesh_node[i]]) continue;
+    if (!mesh_.counted[grid_.mesh_node[i]]) continue;
     local[0] += magnitude(scratch_[i]);
   }
   std::fill_n(force_.begin(), grid_.node_count(), Vec<dim>{});
@@ -255,7 +255,7 @@ PetscErrorCode SoilMotion<dim, Phases>::balance(double t, Balance *sums) {
   conditions_.add_reactions(force_.data());
   const Vec<dim> gravity = loading.gravity_at(loading.set_at);
   for (int i = 0; i < grid_.node_count(); ++i) {
-    if (!mesh_.owned[grid_.mesh_node[i]]) continue;
+    if (!mesh_.counted[grid_.mesh_node[i]]) continue;
     for (int d = 0; d < dim; ++d) force_[i][d] += grid_.mass[i] * gravity[d];
     local[1] += magnitude(force_[i]);
   }

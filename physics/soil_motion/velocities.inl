@@ -89,6 +89,7 @@ PetscErrorCode SoilMotion<dim, Phases>::map_back(double t, double gamma, double 
     PetscCall(to_particles_and_back(scratch_.data(), mapped));
     for (int i = 0; i < all; ++i)
       for (int d = 0; d < dim; ++d) mapped[i][d] += (1 - share) * before[i][d];
+    conditions_.keep_dashpots(velocity, mapped);
     constrain(t, mapped);
     for (int i = 0; i < all; ++i)
       for (int d = 0; d < dim; ++d) {
@@ -99,12 +100,14 @@ PetscErrorCode SoilMotion<dim, Phases>::map_back(double t, double gamma, double 
   }
   if (velocities_.relaxes) {
     PetscCall(to_particles_and_back(velocity, mapped));
+    conditions_.keep_dashpots(velocity, mapped);
     const double share = velocities_.relaxed_in(gamma), own = velocities_.own_share_at(t);
     for (int i = 0; i < nodes; ++i)
       for (int d = 0; d < dim; ++d) {
         velocity[i][d] += share * (mapped[i][d] - velocity[i][d]);
         mapped[i][d] += own * velocities_.unmapped_start[i][d];
       }
+    conditions_.keep_dashpots(velocity, mapped);
     constrain(t, velocity);
   } else {  // the same sum, mapped once
     for (int i = 0; i < nodes; ++i)
@@ -112,6 +115,7 @@ PetscErrorCode SoilMotion<dim, Phases>::map_back(double t, double gamma, double 
     PetscCall(to_particles_and_back(scratch_.data(), mapped));
     for (int i = 0; i < nodes; ++i)
       for (int d = 0; d < dim; ++d) mapped[i][d] += velocities_.kept * start[i][d];
+    conditions_.keep_dashpots(velocity, mapped);
   }
   constrain(t, mapped);
   PetscFunctionReturn(0);

@@ -81,11 +81,11 @@ void World<dim>::set_loading(const Stage &stage, double stage_time, const Clock 
   motion->loading.pore_flow = stage.pore_flow;
 }
 
-/// Changes between dashpots and the supports that stand in for them; what these bore stays on as a dead load.
+/// Changes between boundaries and the supports that stand in for them; what these bore stays on as a dead load.
 template <int dim>
 PetscErrorCode World<dim>::fix_dashpots(bool fixed, double time) {
   PetscFunctionBeginUser;
-  if (fixed == conditions.uses_stand_ins() || !conditions.has_dashpots()) PetscFunctionReturn(0);
+  if (fixed == conditions.uses_stand_ins() || !conditions.has_stand_ins()) PetscFunctionReturn(0);
   if (motion->gathered()) PetscCall(release(time));
   if (!fixed) {
     PetscCall(motion->freeze_reactions(time));
@@ -349,6 +349,7 @@ std::vector<Vec<dim>> World<dim>::nodal_displacement() {
     }
   }
   require(mesh.halo.sum(u.empty() ? nullptr : u[0].data(), dim));
+  require(mesh.ties.sum(u.empty() ? nullptr : u[0].data(), dim));
   const FilledGrid<dim> &grid = motion->grid();
   for (int i = 0; i < grid.node_count(); ++i)
     for (int d = 0; d < dim; ++d) {

@@ -119,7 +119,8 @@ class World {
   void read_laws();
   void find_strengths();
   std::vector<Source> read_sources();
-  void read_mesh(DM plex, const std::string &mesh_file, const Cuts &cuts);
+  void read_mesh(DM plex, const std::string &mesh_file, const Cuts &cuts, const std::vector<Source> &sources);
+  void tie_sides(const std::vector<Source> &sources, bool complains);
   void find_mesh_box();
   void check_bodies() const;                                        // world_checks.cpp
   void check_boundaries(const std::vector<Source> &) const;         // world_checks.cpp
@@ -127,6 +128,7 @@ class World {
   void check_fresh_base(const std::string &path) const;             // world_checks.cpp
   void check_something_acts(const std::vector<Source> &) const;     // world_checks.cpp
   void check_earthquake() const;                                    // world_checks.cpp
+  void check_sides(const std::vector<Source> &) const;              // world_checks.cpp
   void check_boxes() const;                                         // world_checks.cpp
   void check_one_of_two(const std::vector<Source> &) const;         // world_checks.cpp
   void check_seeded(const Body<dim> &, const std::string &) const;  // world_checks.cpp

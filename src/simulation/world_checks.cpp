@@ -66,6 +66,29 @@ void World<dim>::check_earthquake() const {
                          " s; earthquake.begin and end take a part of a record");
 }
 
+/// Sides at which ground goes on stand upright, and free ground at rest knows no pore fluid that moves.
+template <int dim>
+void World<dim>::check_sides(const std::vector<Source> &sources) const {
+  constexpr double upright = 1e-6;  // vertical component of the normal
+  for (const Source &source : sources) {
+    if (source.kind.in_motion != OnSoil::tied && !source.kind.has_column) continue;
+    const std::string path = "boundary." + source.name;
+    if (source.kind.has_column && phases.liquid)
+      scene.complain(path + ".kind", std::string("does not know pore fluids that move (phases = \"") + phases.name +
+                                         "\"): take phases = \"dry\" or \"drained\", or kind = \"tied\" where both "
+                                         "sides have one height");
+    double steepest = 0;
+    for (const std::string &group : source.groups)
+      for (const Facet<dim> &f : mesh.facets(group))
+        steepest = std::max(steepest, std::abs(f.normal[scene.vertical()]));
+    MPI_Allreduce(MPI_IN_PLACE, &steepest, 1, MPI_DOUBLE, MPI_MAX, comm);
+    if (steepest > upright)
+      scene.complain(path + ".group", "must be upright, and one of its facets is inclined by " +
+                                          rounded(std::asin(std::min(1., steepest)) / degree.si) +
+                                          " degrees; let the mesh end in upright planes");
+  }
+}
+
 /// Boxes in which there is nothing.
 template <int dim>
 void World<dim>::check_boxes() const {
@@ -240,6 +263,7 @@ void World<dim>::check_boundaries(const std::vector<Source> &sources) const {
     for (const auto &[key, components] : source.kind.vectors)
       if (components != dim) scene.complain(path + "." + key, "must have " + std::to_string(dim) + " components");
   }
+  check_sides(sources);
   check_one_of_two(sources);
   check_one_of_two(seepage_sources);
   check_drains<dim>(mesh, scene);

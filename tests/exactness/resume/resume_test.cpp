@@ -99,6 +99,20 @@ const Variant variants[] = {
        set.insert(set.end(), {"boundary.left.kind=non_reflecting", "boundary.left.incoming_wave=true"});
        return set;
      }()},
+    {"between_tied_sides_on_two_ranks",
+     [] {
+       std::vector<std::string> set = shaken;
+       set.insert(set.end(), {"boundary.left.kind=tied", "boundary.left.group=['left', 'right']"});
+       return set;
+     }(),
+     2, SIGKILL},
+    {"beside_free_ground_balanced_at_every_remap_on_two_ranks",
+     [] {
+       std::vector<std::string> set = shaken;
+       set.insert(set.end(), {"boundary.left.kind=free_field", "mesh.balance_ranks=always"});
+       return set;
+     }(),
+     2, SIGKILL},
     {"with_a_fixed_step", {"integrator.step=2e-4"}},
     {"by_arkode", {"integrator.kind=arkode"}, 1, SIGKILL},
     {"by_arkode_with_moving_water", with_pores({"phases=unsaturated", "integrator.kind=arkode"})},
