@@ -16,9 +16,10 @@ class CellStress {
  public:
   explicit CellStress(int cells) { make_room(mean_, cells); }
 
-  /// Means over the points of a state, weighted by their volumes, and their pressure over patches, (4.7).
-  void find(const FilledGrid<dim> &grid, const std::vector<PointSet> &points, const SoilState<dim> &state,
-            Locking locking, PatchMeans &patches);
+  /// Means of `stress` [body][point][stress_size] over the points of a state, weighted by their volumes, and of its
+  /// pressure over patches, (4.7).
+  void find(const FilledGrid<dim> &grid, const std::vector<PointSet> &points, const std::vector<double *> &stress,
+            const SoilState<dim> &state, Locking locking, PatchMeans &patches);
   /// Forces of a cell on its nodes [N].
   std::array<Vec<dim>, dim + 1> forces(int cell, const SoilState<dim> &state) const {
     const auto &s = mean_[cell];

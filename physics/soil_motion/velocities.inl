@@ -121,8 +121,14 @@ PetscErrorCode SoilMotion<dim, Phases>::map_back(double t, double gamma, double 
 template <int dim, class Phases>
 PetscErrorCode SoilMotion<dim, Phases>::rates(double t, const double *u, const double *v, double *du, double *dv) {
   PetscFunctionBeginUser;
-  PetscCall(acceleration(t, u, v, dv));
   const int nodes = grid_.node_count(), all = nodes * fields;
+  if (damped()) {
+    Vec<dim> *skeleton = scratch_.data();
+    std::copy_n(reinterpret_cast<const Vec<dim> *>(v), nodes, skeleton);
+    conditions_.constrain(loading.time_at(t), grid_, skeleton, true);
+    PetscCall(find_moving(t, skeleton, velocities_.share_not_mapped(t), false));
+  }
+  PetscCall(accelerate(t, u, v, dv));
   const std::vector<Vec<dim>> &start = velocities_.start;
   Vec<dim> *supported = scratch_.data(), *mapped = reinterpret_cast<Vec<dim> *>(du),
            *change = reinterpret_cast<Vec<dim> *>(dv);

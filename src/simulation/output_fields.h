@@ -177,6 +177,7 @@ OutputFields<Point> output_fields(const PhaseTraits &phases,
   // The internal variables of the laws. A body whose law does not have a variable shows NaN there.
   for (const auto &body : bodies)
     for (const HistoryField &variable : history_fields(body->law())) {
+      if (variable.of_tensor) continue;
       const std::string name = variable.name;
       if (std::ranges::any_of(fields.list(), [&](const auto &field) { return field.name == name; })) continue;
       std::vector<int> index(bodies.size(), -1);  // of the variable in each body's history

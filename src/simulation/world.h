@@ -67,8 +67,11 @@ class World {
   /// Displacements, velocities and plastic strain are zero from now on.
   void reset_displacement(double time);
 
-  /// The least over the filled cells, by the elastic waves in each cell alone [s]. Collective.
+  /// The least over the filled cells, by the elastic waves in each cell alone and the Rayleigh damping that acts [s].
+  /// Collective.
   double critical_step_of_cells(double time);
+  /// By which the Rayleigh damping that acts slows motion of an angular frequency [1/s], at most [1/s].
+  double damping_rate(double omega) const;
   /// One report per body. Collective.
   std::vector<BodyReport> report();
   /// Faces of the bodies that are there at the start beyond which there is no soil, of all ranks. Collective.

@@ -50,6 +50,10 @@ void World<dim>::check_bodies() const {
                                         "\"` has none; model the water (`phases = \"drained\"` and a [water] excess "
                                         "below zero), or leave out the "
                                         "keys suction_...");
+    if (body.damping_ratio > 0 && rate_dependent(laws[b]))
+      scene.complain(path + ".damping_ratio",
+                     std::string("must be 0 where law = \"") + law_name(laws[b]) +
+                         "\", whose stress depends on the rate of strain already: its viscosity takes energy");
     check_lattice(path, particles_per_cell<dim>(body));
     for (size_t k = 0; k < body.dense.size(); ++k)
       check_lattice(path + ".dense." + std::to_string(k), body.dense[k].particles_per_cell);
