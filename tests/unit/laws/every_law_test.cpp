@@ -82,7 +82,11 @@ TYPED_TEST(EveryLaw, keeps_principal_stresses_under_finite_rotation) {
       worst = std::max(worst,
                        (R[i] * matrix<dim>(still.stress[i]) * R[i].transpose() - matrix<dim>(turned.stress[i])).norm());
     EXPECT_LT(worst, 1e-12 * 1e6);
-    EXPECT_EQ(still.history, turned.history);
+    const auto fields = history_fields(law);
+    for (std::size_t k = 0; k < still.history.size(); ++k)
+      if (!fields[k % fields.size()].of_tensor) {
+        EXPECT_EQ(still.history[k], turned.history[k]);
+      }
   });
 }
 

@@ -118,8 +118,7 @@ double miss(const HenckyDruckerPrager &law, const Update &u) {
 
 /// Its elements, which no strain has moved before, follow the backbone along the deviator of the strain; the base law
 /// returns the stress.
-template <class Base>
-Triple strained(const Hysteretic<Base> &law, const Triple &s, const Triple &e) {
+Triple strained(const HystereticMohrCoulomb &law, const Triple &s, const Triple &e) {
   const Triple sheared = e.array() - mean(e);
   const double gamma = 2 * shear(e);
   double tau = law.lasting * gamma;
