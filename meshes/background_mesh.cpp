@@ -14,6 +14,7 @@
 #include "meshes/mesh_part.h"
 #include "meshes/plex.h"
 #include "meshes/refine.h"
+#include "meshes/side_columns.h"
 #include "meshes/simplex.h"
 #include "meshes/soundness.h"
 #include "meshes/whole_mesh.h"
@@ -59,7 +60,8 @@ std::vector<FilledCell<dim>> in_larger_cells(std::vector<FilledCell<dim>> cells,
 template <int dim>
 BackgroundMesh<dim> BackgroundMesh<dim>::read(MPI_Comm comm, const std::string &file,
                                               const std::vector<std::pair<std::string, double>> &region_weight,
-                                              const Cuts &given, int halvings, const SeedCounts &seeds) {
+                                              const Cuts &given, int halvings, const SeedCounts &seeds,
+                                              const std::vector<std::string> &sides) {
   int rank;
   MPI_Comm_rank(comm, &rank);
   std::string complaint;
@@ -80,6 +82,12 @@ BackgroundMesh<dim> BackgroundMesh<dim>::read(MPI_Comm comm, const std::string &
     const CellTree<dim> tree(all.cells);
     agree(comm, complaint_about_cells(file, all.cells, tree, all.regions, Names::required));
     if (rank == 0) mesh.remarks_ = mesh_remarks(all.cells, tree, all.regions);
+  }
+  if (!sides.empty()) {
+    for (const std::string &side : sides)
+      if (rank == 0 && complaint.empty()) complaint = add_column_beside<dim>(source, side);
+    if (complaint.empty()) all = part_of_file<dim>(source, complaint);
+    agree(comm, complaint.empty() ? "" : file + ": " + complaint);
   }
   double counts[2] = {static_cast<double>(all.cells.node.size()), 0};
   for (const FilledCell<dim> &one : filled_cells<dim>(all.regions, seeds.per_cell))
@@ -236,6 +244,17 @@ template <int dim>
 void BackgroundMesh<dim>::close(const std::string &group) {
   closed.resize(cells.size(), 0);
   for (const Facet<dim> &f : facets(group)) closed[f.cell] = static_cast<char>(closed[f.cell] | 1 << f.face);
+}
+
+template <int dim>
+void BackgroundMesh<dim>::tie(const std::vector<std::vector<long long>> &groups) {
+  ties = LinkedNodes(comm(), united(groups), global_node, owned);
+  ties.find_places([](int node) { return node; });
+  require(ties.sum(nodal_volume.data(), 1));
+  const LocalNumbers node_of(global_node);
+  for (const auto &group : ties.groups())
+    for (std::size_t k = 1; k < group.size(); ++k)
+      if (const int node = node_of.find(group[k]); node >= 0) counted[node] = 0;
 }
 
 template <int dim>

@@ -13,6 +13,7 @@
 #include "base/owned.h"
 #include "base/vec.h"
 #include "meshes/halo.h"
+#include "meshes/linked_nodes.h"
 #include "meshes/mesh_needs.h"
 #include "meshes/mesh_report.h"
 #include "meshes/partition.h"
@@ -64,10 +65,12 @@ class BackgroundMesh {
   /// ranks, is the partition instead. Patches of cells, theory 4.5, stay on one rank and do not depend on the number of
   /// ranks. Collective. Throws std::invalid_argument (the same on all ranks) for a file that cannot be read, a wrong
   /// dimension, cells of zero volume or that overlap, cells in no named group, and more cells or `seeds` than there are
-  /// numbers and memory for, before edges are halved.
+  /// numbers and memory for, before edges are halved. Columns of cells are added beside the groups `sides`
+  /// (meshes/side_columns.h).
   static BackgroundMesh read(MPI_Comm comm, const std::string &file,
                              const std::vector<std::pair<std::string, double>> &region_weight, const Cuts &given = {},
-                             int halvings = 0, const SeedCounts &seeds = {});
+                             int halvings = 0, const SeedCounts &seeds = {},
+                             const std::vector<std::string> &sides = {});
   /// Takes a distributed DMPlex of a host program (a reference is kept). Labels with a physical name are regions and
   /// groups; patches are cut within each rank, `global_cell` is DMPlex's cell numbering. Collective; throws as `read`
   /// does.
@@ -95,7 +98,8 @@ class BackgroundMesh {
   std::vector<Vec<dim>> position;      ///< of nodes [m]
   std::vector<double> mean_edge;       ///< of the edges at a node, over all ranks [m]
   std::vector<double> nodal_volume;    ///< sum of cell volumes / (dim + 1) at a node, over all ranks [m3]
-  std::vector<char> owned;             ///< 1 on the one rank that counts the node in global sums
+  std::vector<char> owned;             ///< 1 on one of the ranks that have the node
+  std::vector<char> counted;           ///< the same, but of nodes that are tied for one alone: it counts in global sums
   std::vector<long long> global_cell;  ///< number of the cell that does not depend on the partition (order in the file)
   std::vector<long long> global_node;  ///< likewise of the node
   std::vector<PetscInt> host_vertex;   ///< point of a node in the DMPlex of a host program; empty without a host
@@ -107,6 +111,9 @@ class BackgroundMesh {
   /// the cell's altitude is put back inside. Empty: no face is of this kind.
   std::vector<char> closed;
   Halo halo;
+  LinkedNodes ties;  ///< nodes that move alike
+  /// From now on the nodes of each group (global numbers) move alike, as if they were one. Collective.
+  void tie(const std::vector<std::vector<long long>> &groups);
 
   /// Local cells of a named group of cells, ascending; found on some rank or `has_region` is false on all.
   std::vector<int> region(const std::string &name) const;

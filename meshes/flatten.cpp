@@ -154,6 +154,7 @@ PetscErrorCode BackgroundMesh<dim>::flatten(MeshPart<dim> part) {
     position[i] = s.position[v], mean_edge[i] = part.mean_edge[v];
     owned[i] = part.owned[v], global_node[i] = part.node_number[v];
   }
+  counted = owned;
   std::vector<std::vector<int>> shared;
   for (const auto &with_one : part.shared_nodes) {
     shared.emplace_back();

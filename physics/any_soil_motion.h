@@ -34,11 +34,12 @@ struct Loading {
                                            ///< the motion comes in as a wave
   double ramp = 1;                         ///< of the stage: gravity and with it pore pressure grow from 0 to 1
   double time = 0;                         ///< load time: the t of the scene's functions [s]
-  double set_at = 0;      ///< time of the run at which ramp and load time have these values [s], and their rates:
-  double ramp_rate = 0;   ///< [1/s]
-  double time_rate = 1;   ///< 0 in a stage that holds loads
-  double damping = 0;     ///< local damping factor
-  bool pore_flow = true;  ///< pore fluids move; otherwise their pressures are prescribed
+  double set_at = 0;     ///< time of the run at which ramp and load time have these values [s], and their rates:
+  double ramp_rate = 0;  ///< [1/s]
+  double time_rate = 1;  ///< 0 in a stage that holds loads
+  double damping = 0;    ///< local damping factor
+  std::array<double, 2> damping_frequencies{};  ///< of Rayleigh damping [Hz]; 0: none
+  bool pore_flow = true;                        ///< pore fluids move; otherwise their pressures are prescribed
   bool softening = true;  ///< plastic strain is recorded; otherwise soil keeps the strength it has
 
   /// Gravity, and the inertia of what is at rest on the base, per mass [m/s2].

@@ -19,6 +19,7 @@
 #include "physics/soil_motion/fastest_mode.h"
 #include "physics/soil_motion/nodal_velocities.h"
 #include "physics/soil_motion/prescribed_pore_water.h"
+#include "physics/soil_motion/rayleigh_damping.h"
 #include "physics/soil_motion/remap.h"
 #include "physics/soil_motion/softening_strain.h"
 #include "physics/soil_motion/soil_state.h"
@@ -136,11 +137,14 @@ class SoilMotion final : public AnySoilMotion<dim> {
   bool is_trial(const State &state) const { return &state != &accepted_; }
   /// How a cell has moved since the last remap; not at all before `begin`.
   CellMotion<dim> cell_motion(int mesh_cell) const;
-  PetscErrorCode find_moving(double t);
+  PetscErrorCode find_moving(double t, const Vec<dim> *v, double own, bool mapped);
   PetscErrorCode meet_boundaries(double load_time);
   // forces
   void add_body_forces(double load_time);
-  PetscErrorCode total_force(double t, const State &state);
+  PetscErrorCode total_force(double t, const State &state, bool damped = false);
+  PetscErrorCode add_viscous_forces(const State &state);
+  PetscErrorCode accelerate(double t, const double *u, const double *v, double *a);
+  bool damped() const { return rayleigh_.acts(loading.damping_frequencies); }
   const double *extra_mass() const {
     if constexpr (Phases::prescribed) return water_.extra_mass().data();
     return nullptr;
@@ -170,6 +174,7 @@ class SoilMotion final : public AnySoilMotion<dim> {
   [[no_unique_address]] If<Phases::prescribed, PrescribedPoreWater<dim>> water_;
   WorkLedger<dim> work_;
   FastestMode<dim, fields> fastest_mode_;
+  RayleighDamping<dim> rayleigh_;
 
   std::vector<Vec<dim>> force_;    ///< of the nodes [N]
   std::vector<Vec<dim>> scratch_;  ///< [field][node], for velocities or forces

@@ -43,6 +43,7 @@ SoilMotion<dim, Phases>::SoilMotion(const MotionParts<dim> &parts)
                 std::any_of(parts.bodies.begin(), parts.bodies.end(),
                             [](const auto &body) { return !own_acceleration(body->source()).empty(); })),
       fastest_mode_(parts.mesh, smallest_mass_, pores_of_bodies(parts)),
+      rayleigh_(parts.mesh, parts.bodies),
       fluid_(parts.mesh, parts.bodies, parts.scene) {
   const int nodes = parts.mesh.node_count();
   make_room(force_, nodes), make_room(scratch_, static_cast<size_t>(nodes) * fields);

@@ -19,9 +19,10 @@ namespace talus {
 template <int dim>
 double cell_frequency_squared(const Cell<dim> &cell, const Law &law, double density, const PoreStiffness &pores = {});
 
-/// Largest stable step where drag enters forces from the velocities at the start of the step, omega^2 dt^2 + 2 r dt =
-/// 4, docs/theory/pores.md (6.1a) [s]. `critical`: 2 / omega without drag [s]; `rate`: r, the largest of the drag
-/// [1/s].
+/// Largest stable step where drag or damping enters forces from the velocities at the start of the step, omega^2 dt^2 +
+/// 2 r dt = 4, docs/theory/pores.md (6.1a) [s]. `critical`: 2 / omega without it [s]; `rate`: r, the largest of the
+/// drag [1/s]. With the damping ratio xi = r / (2 omega) this is 2 / omega (sqrt(1 + xi^2) - xi) (Belytschko, Liu &
+/// Moran 2000, eq. (6.2.23)).
 inline double with_explicit_drag(double critical, double rate) {
   const double r = rate * critical;
   return 4 * critical / (r + std::sqrt(r * r + 16));
@@ -34,19 +35,25 @@ class CriticalStep {
   CriticalStep(const BackgroundMesh<dim> &mesh, const Law &law, double density, PoreStiffness pores = {})
       : mesh_(&mesh), law_(&law), density_(density), pores_(std::move(pores)) {
     make_room(step_, mesh.cell_count());
+    if (!pores_.fluids.empty()) make_room(empty_, mesh.cell_count());
   }
-  double operator()(int mesh_cell) {
-    double &step = step_[mesh_cell];
-    if (step == 0) step = 2 / std::sqrt(cell_frequency_squared(mesh_->cells[mesh_cell], *law_, density_, pores_));
-    return step;
+  double operator()(int mesh_cell) { return find(step_[mesh_cell], mesh_cell, pores_); }
+  /// Of the skeleton, without the fluids in its pores.
+  double skeleton(int mesh_cell) {
+    return empty_.empty() ? (*this)(mesh_cell) : find(empty_[mesh_cell], mesh_cell, PoreStiffness{});
   }
 
  private:
+  double find(double &step, int mesh_cell, const PoreStiffness &pores) {
+    if (step == 0) step = 2 / std::sqrt(cell_frequency_squared(mesh_->cells[mesh_cell], *law_, density_, pores));
+    return step;
+  }
+
   const BackgroundMesh<dim> *mesh_;
   const Law *law_;
   double density_;
   PoreStiffness pores_;
-  std::vector<double> step_;
+  std::vector<double> step_, empty_;
 };
 
 }  // namespace talus

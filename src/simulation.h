@@ -116,9 +116,11 @@ class AnySimulation {
   virtual double time() const = 0;
   virtual long long steps() const = 0;
   virtual long long remaps() const = 0;
-  virtual long long particles() const = 0;       ///< over all ranks
-  virtual double mass() const = 0;               ///< over all ranks [kg]
-  virtual double critical_step() = 0;            ///< of the present state, over all ranks [s]
+  virtual long long particles() const = 0;  ///< over all ranks
+  virtual double mass() const = 0;          ///< over all ranks [kg]
+  /// Of the present state, over all ranks; under Rayleigh damping with these frequencies [Hz], if there is any [s].
+  /// Collective.
+  virtual double critical_step(const std::array<double, 2> &damping_frequencies = {}) = 0;
   virtual std::string step_bound() const = 0;    ///< what the critical step is taken from, and why, as a sentence
   virtual MeshReport mesh_report() const = 0;    ///< collective
   virtual std::vector<BodyReport> bodies() = 0;  ///< collective

@@ -35,6 +35,7 @@ class Boundary {
   bool follows = false;           ///< of a load
   bool open_water = false;        ///< of a pressure or seepage
   bool incoming_wave = false;     ///< of a dashpot: its other end moves as the ground in an earthquake
+  bool has_column = false;        ///< of a dashpot: its other end is free ground, computed beside the mesh
   bool remembers = false;         ///< of a contact: what it bears depends on how far soil has slipped on it
   std::vector<TimeSpan> changes;  ///< when the functions that the scene gives change with time
   /// Keys and numbers of components of the vectors that the scene gives as functions; each must have one per dimension.
@@ -59,11 +60,13 @@ class Boundary {
   bool has_inflow() const { return fluids_only() || fluid_face(); }
   /// Does it need a gas that moves?
   bool needs_gas() const { return gas == OnGas::pressure; }
-  /// Does it support the skeleton only in quasi-static stages and those that freeze loads, in place of its dashpots?
+  /// Does it support the skeleton only in quasi-static stages and those that freeze loads, in place of what it does in
+  /// motion?
   bool stands_in() const { return quasi_static == OnSoil::support && in_motion != OnSoil::support; }
   /// Does soil stay inside the mesh here? Where facets are rough, a particle would else leave between their nodes.
   bool keeps_soil_inside() const {
-    return in_motion == OnSoil::contact || (in_motion == OnSoil::support && !on_soil<2>().speed);
+    return in_motion == OnSoil::tied || has_column || in_motion == OnSoil::contact ||
+           (in_motion == OnSoil::support && !on_soil<2>().speed);
   }
   /// Do the pore fluids have a face of its own here, neither a wall nor the surface of the soil?
   bool fluid_face() const { return water != OnWater::wall && water != OnWater::surface; }
@@ -84,6 +87,8 @@ struct NamedBoundary {
   std::string name;
   std::vector<std::string> groups;
   Boundary kind;
+  /// Those of the groups that are the faces of columns beside the mesh, as many as the others and in their order.
+  std::vector<std::string> columns{};
 };
 
 /// Reads the kind that the table names, out of the list in kinds.h. Throws SceneError.
@@ -145,6 +150,7 @@ requires(!std::same_as<Kind, Boundary>) Boundary::Boundary(Kind of)
   if constexpr (member::precedence<Kind>) precedence = Kind::precedence;
   if constexpr (member::follows<Kind>) follows = kind->follows();
   if constexpr (member::incoming_wave<Kind>) incoming_wave = kind->incoming_wave;
+  if constexpr (member::has_column<Kind>) has_column = kind->has_column;
   if constexpr (member::open_water<Kind>) open_water = Kind::open_water;
   if constexpr (member::friction_coefficient<Kind>)
     friction_coefficient = [kind](double x, double y, double z, double t, double slip) {

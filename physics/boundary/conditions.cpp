@@ -28,11 +28,20 @@ PetscErrorCode Conditions<dim>::setup(const BackgroundMesh<dim> &mesh, std::vect
     if (kind.in_motion == OnSoil::load) {
       surface_loads_.add_face(s, kind, std::move(facets));
     } else {
-      if (kind.in_motion == OnSoil::dashpot) dashpots_.emplace_back(s, facets);
+      if (kind.in_motion == OnSoil::dashpot && !kind.has_column) dashpots_.push_back({s, -1, facets});
       if (kind.in_motion == OnSoil::contact) bases_.add_facets(s, facets);
       faces.push_back({s, std::move(facets)});
     }
   }
+  columns_ = find_columns<dim>(mesh, sources_), column_nodes_.resize(columns_.size());
+  std::vector<int> met(sources_.size(), 0);
+  std::size_t links = 0;
+  for (int c = 0; c < static_cast<int>(columns_.size()); ++c) {
+    const int s = columns_[c].source;
+    dashpots_.push_back({s, c, mesh.facets(sources_[s].groups[met[s]++])});
+    column_nodes_[c].reserve(columns_[c].nodes.size()), links += columns_[c].links.nodes().size();
+  }
+  pulls_.reserve(links);
   std::vector<NodeNormal<dim>> normals;
   PetscCall(find_node_normals(mesh, faces, normals));
   // the order must not depend on the partition, so that all ranks build the same constraints
@@ -47,7 +56,7 @@ PetscErrorCode Conditions<dim>::setup(const BackgroundMesh<dim> &mesh, std::vect
     prescribed_.add(n.node, n.source, n.normal);
   }
   size_t reactions = dim * prescribed_.reserve() + bases_.finish_setup();
-  for (const auto &[source, facets] : dashpots_) reactions += dim * facets.size();
+  for (const DashpotFace &face : dashpots_) reactions += dim * face.facets.size();
   impulses_.reserve(reactions);
   PetscFunctionReturn(0);
 }
@@ -58,9 +67,10 @@ PetscErrorCode Conditions<dim>::begin(FilledGrid<dim> &grid, const std::vector<s
   PetscFunctionBeginUser;
   const BackgroundMesh<dim> &mesh = grid.mesh();
   const int nodes = grid.node_count();
-  active_dashpots_.clear(), active_frozen_.clear(), impulses_.clear();
+  active_dashpots_.clear(), active_frozen_.clear(), impulses_.clear(), pulls_.clear();
+  first_dashpot_.assign(columns_.size() + 1, 0);
   counted_.resize(nodes);
-  for (int i = 0; i < nodes; ++i) counted_[i] = mesh.owned[grid.mesh_node[i]];
+  for (int i = 0; i < nodes; ++i) counted_[i] = mesh.counted[grid.mesh_node[i]];
   prescribed_.begin(grid, stand_ins_);
   for (const Reaction &r : frozen_)
     if (!stand_ins_ && grid.find_node(r.node) >= 0)
@@ -68,7 +78,8 @@ PetscErrorCode Conditions<dim>::begin(FilledGrid<dim> &grid, const std::vector<s
   PetscCall(bases_.begin(grid, filling));
   if (!dashpots_.empty()) {
     constexpr int width = dim * dim;
-    for (const auto &[source, facets] : dashpots_) {
+    for (const auto &[source, column, facets] : dashpots_) {
+      if (column >= 0) first_dashpot_[column] = static_cast<int>(active_dashpots_.size());
       if (stand_ins_ && sources_[source].kind.stands_in()) continue;
       const auto &dashpot = sources_[source].kind.template on_soil<dim>().dashpot;
       zeros_with_room(nodal_, static_cast<size_t>(nodes) * width);
@@ -84,8 +95,58 @@ PetscErrorCode Conditions<dim>::begin(FilledGrid<dim> &grid, const std::vector<s
       PetscCall(grid.sum(nodal_.data(), width));
       for (int i = 0; i < nodes; ++i) {
         const Square<dim> matrix = Eigen::Map<const Square<dim>>(&nodal_[i * width]);
-        if (matrix.trace() > 0) active_dashpots_.push_back({i, source, matrix});
+        const Vec<dim> beyond = sources_[source].kind.incoming_wave ? ground_velocity_ : Vec<dim>{};
+        if (matrix.trace() > 0) active_dashpots_.push_back({i, source, matrix, beyond});
       }
+    }
+  }
+  const int dashpots = static_cast<int>(active_dashpots_.size());
+  first_dashpot_.back() = dashpots;
+  for (std::size_t c = 0; c < columns_.size(); ++c) {
+    if (stand_ins_) first_dashpot_[c] = dashpots;
+    const auto compact = [&](int node) { return grid.find_node(node); };
+    columns_[c].links.find_places(compact), column_nodes_[c].clear();
+    for (const int node : columns_[c].nodes)
+      if (compact(node) >= 0) column_nodes_[c].push_back(compact(node));
+  }
+  PetscFunctionReturn(0);
+}
+
+/// How the other ends of dashpots move: as the ground in an earthquake, and at columns as these. Collective.
+template <int dim>
+void Conditions<dim>::see_columns(const Vec<dim> *v) {
+  for (std::size_t c = 0; c < columns_.size(); ++c) {
+    zeros_with_room(nodal_, counted_.size() * dim);
+    for (const int i : column_nodes_[c]) std::copy_n(v[i].begin(), dim, &nodal_[static_cast<std::size_t>(i) * dim]);
+    (void)columns_[c].links.sum(nodal_.data(), dim);
+    for (int k = first_dashpot_[c]; k < first_dashpot_[c + 1]; ++k)
+      std::copy_n(&nodal_[static_cast<std::size_t>(active_dashpots_[k].node) * dim], dim,
+                  active_dashpots_[k].beyond.begin());
+  }
+}
+
+template <int dim>
+PetscErrorCode Conditions<dim>::add_columns(FilledGrid<dim> &grid, const Traction &traction, Vec<dim> *force) {
+  PetscFunctionBeginUser;
+  pulls_.clear();
+  for (SideColumn<dim> &column : columns_) {
+    zeros_with_room(nodal_, counted_.size() * dim);
+    for (const Facet<dim> &f : column.facets) {
+      const int cell = grid.find_cell(f.cell);
+      if (cell < 0) continue;
+      const Vec<dim> on_column = traction(cell, f.normal);  // the side pulls back
+      for (const int node : f.node)
+        for (int d = 0; d < dim; ++d) nodal_[grid.find_node(node) * dim + d] -= f.area / dim * on_column[d];
+    }
+    PetscCall(grid.sum(nodal_.data(), dim));
+    PetscCall(column.links.sum(nodal_.data(), dim));
+    for (const int node : column.beside) {
+      const int i = grid.find_node(node);
+      if (i < 0) continue;
+      Reaction pull{i, column.source, {}};
+      std::copy_n(&nodal_[static_cast<std::size_t>(i) * dim], dim, pull.value.begin());
+      add_scaled<dim>(force[i], 1, pull.value);
+      pulls_.push_back(pull);
     }
   }
   PetscFunctionReturn(0);
@@ -98,6 +159,11 @@ void Conditions<dim>::freeze_reactions(const FilledGrid<dim> &grid, const Vec<di
     for (int k = 0; k < p.condition->count; ++k) {
       const int source = p.condition->source[k];
       if (!sources_[source].kind.stands_in()) continue;
+      if (sources_[source].kind.has_column) {  // a column pulls along the side too: what nobody bears balances it
+        Reaction rest{grid.mesh_node[p.node], source, {}};
+        add_scaled<dim>(rest.value, -1, force[p.node]), p.condition->take_from(rest.value);
+        frozen_.push_back(rest);
+      }
       Reaction r{grid.mesh_node[p.node], source, {}};
       add_scaled<dim>(r.value, -dot<dim>(force[p.node], p.condition->direction[k]), p.condition->direction[k]);
       frozen_.push_back(r);
@@ -112,8 +178,9 @@ void Conditions<dim>::add_reactions(Vec<dim> *force) const {
 template <int dim>
 void Conditions<dim>::add_work(const Vec<dim> *u) {
   for (const Reaction &r : impulses_) work_[r.source] += dot<dim>(r.value, u[r.node]) / resolved_step_;
-  for (const Reaction &r : active_frozen_)
-    if (counted_[r.node]) work_[r.source] += dot<dim>(r.value, u[r.node]);
+  for (const auto *held : {&active_frozen_, &pulls_})
+    for (const Reaction &r : *held)
+      if (counted_[r.node]) work_[r.source] += dot<dim>(r.value, u[r.node]);
   surface_loads_.add_work(u, work_);
   bases_.add_slip(u);
 }
@@ -126,8 +193,9 @@ void Conditions<dim>::constrain(double t, const FilledGrid<dim> &grid, Vec<dim> 
 
 template <int dim>
 void Conditions<dim>::project(const Vec<dim> *v, Vec<dim> *force) {
+  see_columns(v);
   for (const Dashpot &d : active_dashpots_)
-    map<dim>(force[d.node]) -= d.matrix * (map<dim>(v[d.node]) - map<dim>(beyond(d)));
+    map<dim>(force[d.node]) -= d.matrix * (map<dim>(v[d.node]) - map<dim>(d.beyond));
   bases_.project(prescribed_, v, force);
   for (const ActivePrescribed &p : prescribed_.active()) p.condition->take_from(force[p.node]);
 }
@@ -146,12 +214,17 @@ void Conditions<dim>::resolve(double t, double gamma, const FilledGrid<dim> &gri
     return before;
   };
   impulses_.clear(), resolved_step_ = gamma;
-  for (const Dashpot &d : active_dashpots_) {
+  const auto damp = [&](const Dashpot &d) {
     const Vec<dim> before = v[d.node];
     const Square<dim> mass = pores.mass(grid, d.node), system = mass + gamma * d.matrix;
-    map<dim>(v[d.node]) = system.inverse() * (mass * map<dim>(before) + gamma * d.matrix * map<dim>(beyond(d)));
+    map<dim>(v[d.node]) = system.inverse() * (mass * map<dim>(before) + gamma * d.matrix * map<dim>(d.beyond));
     account(d.node, d.source, difference(v[d.node], before));
-  }
+  };
+  const auto beside_columns =
+      active_dashpots_.begin() + (columns_.empty() ? active_dashpots_.size() : first_dashpot_[0]);
+  std::for_each(active_dashpots_.begin(), beside_columns, damp);
+  see_columns(v);  // which dashpots below them have slowed
+  std::for_each(beside_columns, active_dashpots_.end(), damp);
   bases_.resolve(t, gamma, grid, prescribed_, pores, v);
   for (const auto &c : bases_.active()) account(c.node, c.contact->source, c.change);
   for (const ActivePrescribed &p : prescribed_.active())

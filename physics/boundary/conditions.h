@@ -2,6 +2,8 @@
 /// The action of the boundaries of a scene on the skeleton at the nodes, docs/theory section 6. Prescribed directions
 /// are orthonormalised per node once. A contact has one constraint per patch of facets at a node. Loads and dashpots
 /// act where facets have soil behind them.
+#include <algorithm>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -10,6 +12,7 @@
 #include "physics/boundary/boundary.h"
 #include "physics/boundary/prescribed_motion.h"
 #include "physics/boundary/rigid_bases.h"
+#include "physics/boundary/sides.h"
 #include "physics/boundary/surface_loads.h"
 #include "transfer/filled_grid.h"
 
@@ -25,17 +28,30 @@ class Conditions {
   PetscErrorCode begin(FilledGrid<dim> &grid, const std::vector<std::array<double, 2>> &impedance,
                        const std::vector<double> &filling);
 
-  /// In stages that freeze loads (`hold_loads`), supports stand in for dashpots. Takes effect at the next `begin`.
+  /// In stages that freeze loads (`hold_loads`), supports stand in for dashpots and ties. Takes effect at the next
+  /// `begin`.
   void use_stand_ins(bool use) { stand_ins_ = use; }
   bool uses_stand_ins() const { return stand_ins_; }
   /// Stores the reactions of those supports to the nodal forces (summed over ranks) as a dead load.
   void freeze_reactions(const FilledGrid<dim> &grid, const Vec<dim> *force);
   /// Adds the frozen reactions to nodal forces summed over ranks.
   void add_reactions(Vec<dim> *force) const;
+  /// Adds the tractions of columns on the sides that they stand beside to nodal forces summed over ranks; `traction`
+  /// gives the force per area on the soil in a filled cell of this rank through a face of outward normal n [Pa].
+  /// Collective.
+  using Traction = std::function<Vec<dim>(int cell, const Vec<dim> &n)>;
+  PetscErrorCode add_columns(FilledGrid<dim> &grid, const Traction &traction, Vec<dim> *force);
 
   /// Imposes prescribed velocities and keeps nodes from entering a base. With `sticking`, nodes that stuck in the last
   /// `resolve` do not slide.
   void constrain(double t, const FilledGrid<dim> &grid, Vec<dim> *v, bool sticking);
+  /// Gives nodes with dashpots that end in rock or nothing the velocity `v` in place of the mapped one, `w`. Particles
+  /// lie on one side of them: where soil moves against a dashpot, which strains it, a mean of theirs is that of a place
+  /// half a cell inside.
+  void keep_dashpots(const Vec<dim> *v, Vec<dim> *w) const {
+    for (const Dashpot &d : active_dashpots_)
+      if (!sources_[d.source].kind.has_column) w[d.node] = v[d.node];
+  }
   /// Takes from velocities what goes into a base.
   void leave_base(Vec<dim> *v) { bases_.leave_base(prescribed_, v); }
   /// Subtracts from nodal forces the forces of dashpots and friction at velocities `v`, and the parts that supports and
@@ -43,7 +59,11 @@ class Conditions {
   void project(const Vec<dim> *v, Vec<dim> *force);
   using Pores = PoresInContact<dim>;
   /// Velocity from now on at the other end of dashpots through which a wave comes in [m/s].
-  void move_ground(const Vec<dim> &velocity) { ground_velocity_ = velocity; }
+  void move_ground(const Vec<dim> &velocity) {
+    ground_velocity_ = velocity;
+    for (Dashpot &d : active_dashpots_)
+      if (sources_[d.source].kind.incoming_wave) d.beyond = velocity;
+  }
   /// Applies dashpots, contact with friction and prescribed velocities, implicitly over a step gamma, and sums up the
   /// reactions.
   void resolve(double t, double gamma, const FilledGrid<dim> &grid, Vec<dim> *v, const Pores &pores = {});
@@ -63,6 +83,9 @@ class Conditions {
 
   const std::vector<Source> &sources() const { return sources_; }
   bool has_dashpots() const { return !dashpots_.empty(); }
+  bool has_stand_ins() const {
+    return std::ranges::any_of(sources_, [](const Source &source) { return source.kind.stands_in(); });
+  }
   bool loads(int source) const { return sources_[source].kind.in_motion == OnSoil::load; }
   /// Impulse on the soil by each boundary since the last call, per source [N s]; collective.
   PetscErrorCode take_impulses(MPI_Comm comm, std::vector<Vec<dim>> &impulse);
@@ -72,11 +95,9 @@ class Conditions {
   struct Dashpot {
     int node, source;
     Square<dim> matrix;  // [kg/s]
+    Vec<dim> beyond;     // velocity of its other end [m/s]
   };
-  /// Velocity of the other end of a dashpot.
-  Vec<dim> beyond(const Dashpot &d) const {
-    return sources_[d.source].kind.incoming_wave ? ground_velocity_ : Vec<dim>{};
-  }
+  void see_columns(const Vec<dim> *v);
   struct Reaction {
     int node, source;
     Vec<dim> value;  // impulse of the last `resolve` [N s], or dead load [N]
@@ -85,13 +106,21 @@ class Conditions {
   std::vector<Source> sources_;
   PrescribedMotion<dim> prescribed_;
   RigidBases<dim> bases_;
-  std::vector<std::pair<int, std::vector<Facet<dim>>>> dashpots_;
+  struct DashpotFace {
+    int source, column;  // the column at its other end, -1: none
+    std::vector<Facet<dim>> facets;
+  };
+  std::vector<DashpotFace> dashpots_;  ///< those with a column are the last ones
   std::vector<Dashpot> active_dashpots_;
+  std::vector<SideColumn<dim>> columns_;
+  std::vector<std::vector<int>> column_nodes_;  ///< compact, of each column
+  std::vector<int> first_dashpot_;              ///< active one of each column, and behind them the number of all
   std::vector<double> nodal_;
   Vec<dim> ground_velocity_{};
   double resolved_step_ = 0;
   bool stand_ins_ = false;
   std::vector<Reaction> frozen_, active_frozen_, impulses_;  ///< by mesh node; by compact node; of the last `resolve`
+  std::vector<Reaction> pulls_;                              ///< of columns, last added
   std::vector<double> work_;
   std::vector<Vec<dim>> impulse_;
   SurfaceLoads<dim> surface_loads_;

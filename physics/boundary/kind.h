@@ -27,6 +27,7 @@ enum class OnSoil {
   contact,  ///< is a rigid base, which soil does not enter and which rubs: `friction_coefficient`, `adhesion`, and
             ///< `shear_zone` where rubbing heats it
   load,     ///< exerts a force per area: `load`, `follows`
+  tied,     ///< consists of two opposite sides that move alike; a support may stand in for them
   dashpot,  ///< exerts a force per area against the velocity: `dashpot`; a support may stand in for it
   refused   ///< cannot act in such stages, and a scene that has one is refused
 };
@@ -118,6 +119,12 @@ template <class Kind>
 concept incoming_wave = requires(const Kind &kind) {
   { kind.incoming_wave } -> std::convertible_to<bool>;
 };
+/// `has_column`: is the other end of the dashpot free ground, of which a column is computed beside the mesh? Without it
+/// it is not.
+template <class Kind>
+concept has_column = requires(const Kind &kind) {
+  { kind.has_column } -> std::convertible_to<bool>;
+};
 /// `outside(x, y, z, t, LiquidBeyond)`: pressure of the liquid beyond the face [Pa].
 template <class Kind>
 concept outside = requires(const Kind &kind) {
@@ -162,14 +169,15 @@ concept StatesGas = requires {
   { Kind::gas } -> std::convertible_to<OnGas>;
 };
 
-/// Can the program act on the skeleton as the kind states? Dashpots act in motion only, and a contact acts in motion if
-/// it acts at all. A support acts in all stages, or stands in for a dashpot.
+/// Can the program act on the skeleton as the kind states? Dashpots and ties act in motion only, and a contact acts in
+/// motion if it acts at all. A support acts in all stages, or stands in for a dashpot or a tie.
 template <StatesSoil Kind>
 constexpr bool possible_on_soil() {
   constexpr OnSoil moving = Kind::in_motion, still = Kind::quasi_static;
   const bool stands_in = still == OnSoil::support && moving != OnSoil::support;
   return moving != OnSoil::refused && (still != OnSoil::contact || moving == OnSoil::contact) &&
-         still != OnSoil::dashpot && (!stands_in || moving == OnSoil::dashpot);
+         still != OnSoil::dashpot && still != OnSoil::tied &&
+         (!stands_in || moving == OnSoil::dashpot || moving == OnSoil::tied);
 }
 /// Does the kind have the members that its statements about the skeleton ask for, and no others?
 template <StatesSoil Kind>
@@ -215,6 +223,17 @@ template <class Kind>
 concept CompleteOnFluids = complete_on_fluids<Kind>();
 template <class Kind>
 concept BoundaryKind = PossibleOnSoil<Kind> && CompleteOnSoil<Kind> && PossibleOnFluids<Kind> && CompleteOnFluids<Kind>;
+
+/// Absorbs waves that arrive along the normal n (Lysmer & Kuhlemeyer 1969): rho c_p n n + rho c_s (1 - n n), from the
+/// impedances {rho c_p, rho c_s}.
+template <int dim>
+Square<dim> absorbing(const std::array<double, 2> &impedance, const Vec<dim> &n) {
+  Square<dim> matrix;
+  for (int i = 0; i < dim; ++i)
+    for (int j = 0; j < dim; ++j)
+      matrix(i, j) = (impedance[0] - impedance[1]) * n[i] * n[j] + (i == j ? impedance[1] : 0);
+  return matrix;
+}
 
 /// The unit vectors of all axes, for kinds that prescribe the whole velocity.
 template <int dim>

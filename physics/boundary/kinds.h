@@ -5,6 +5,7 @@
 #include "physics/boundary/boundary.h"
 #include "physics/boundary/fixed.h"
 #include "physics/boundary/flux.h"
+#include "physics/boundary/free_field.h"
 #include "physics/boundary/friction.h"
 #include "physics/boundary/gas_pressure.h"
 #include "physics/boundary/head.h"
@@ -16,13 +17,14 @@
 #include "physics/boundary/rainfall.h"
 #include "physics/boundary/roller.h"
 #include "physics/boundary/suction.h"
+#include "physics/boundary/tied.h"
 #include "physics/boundary/traction.h"
 #include "scene/reader.h"
 
 namespace talus {
 
 using BoundaryKinds =
-    std::variant<Fixed, Roller, PrescribedVelocity, Traction, Friction, HeatedFriction, NonReflecting,
+    std::variant<Fixed, Roller, PrescribedVelocity, Traction, Friction, HeatedFriction, NonReflecting, FreeField, Tied,
                  PrescribedPorePressure, PrescribedSuction, Head, Flux, Impermeable, Rainfall, PrescribedGasPressure>;
 
 /// Reads the kind that the table names, out of a list of kinds. Throws SceneError.

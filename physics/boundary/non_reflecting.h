@@ -50,16 +50,11 @@ struct NonReflecting {
     if (support == Support::roller) return {normal};
     return all_axes<dim>();
   }
-  /// rho c_p n n + rho c_s (1 - n n)
   template <int dim>
   Square<dim> dashpot(const std::array<double, 2> &of_soil, const Vec<dim> &n) const {
     const std::array<double, 2> impedance =
         density > 0 ? std::array{density * compression_wave_speed, density * shear_wave_speed} : of_soil;
-    Square<dim> matrix;
-    for (int i = 0; i < dim; ++i)
-      for (int j = 0; j < dim; ++j)
-        matrix(i, j) = (impedance[0] - impedance[1]) * n[i] * n[j] + (i == j ? impedance[1] : 0);
-    return matrix;
+    return absorbing<dim>(impedance, n);
   }
 };
 

@@ -92,7 +92,7 @@ PetscErrorCode RigidBases<dim>::begin(FilledGrid<dim> &grid, const std::vector<d
                          .force = 0,
                          .presses = c.rests,
                          .sticks = c.rests,
-                         .counted = static_cast<bool>(grid.mesh().owned[grid.mesh_node[i]]),
+                         .counted = static_cast<bool>(grid.mesh().counted[grid.mesh_node[i]]),
                          .rubbed = {},
                          .change = {},
                          .pressed = 0,

@@ -10,7 +10,8 @@ struct HistoryField {
   const char *name;
   Unit unit;
   const char *meaning;
-  bool kept = false;  ///< part of the state: stays where a stage resets plastic strain or does not accumulate it
+  bool kept = false;       ///< part of the state: stays where a stage resets plastic strain or does not accumulate it
+  bool of_tensor = false;  ///< a component that turns with the soil; results do not show it
 };
 
 /// What softening reads.

@@ -8,6 +8,7 @@
 #include "physics/laws/cam_clay.h"
 #include "physics/laws/drucker_prager.h"
 #include "physics/laws/hencky.h"
+#include "physics/laws/hysteretic.h"
 #include "physics/laws/law.h"
 #include "physics/laws/linear_elastic.h"
 #include "physics/laws/mohr_coulomb.h"
@@ -21,7 +22,7 @@ namespace talus {
 template <SoilLaw... OneLaw>
 using ListOfLaws = std::variant<OneLaw...>;
 using Laws = ListOfLaws<LinearElastic, MohrCoulomb, DruckerPrager, CamClay, MuI, Newtonian, Bingham, HenckyElastic,
-                        HenckyMohrCoulomb, HenckyDruckerPrager, Umat>;
+                        HenckyMohrCoulomb, HenckyDruckerPrager, HystereticMohrCoulomb, Umat>;
 
 struct Law::Kind {
   Laws law;

@@ -115,6 +115,12 @@ concept advance = requires(const OneLaw &law, Stress<dim, Number> &s, const Stra
                            typename OneLaw::History &h, const Surroundings &around) {
   law.advance(s, e, h, around);
 };
+/// `turn<dim>(history, turned)`: turns the tensors among its internal variables by `turned(stress)`. Absent: there are
+/// none.
+template <class OneLaw, int dim>
+concept turn = requires(typename OneLaw::History &h) {
+  OneLaw::template turn<dim>(h, [](const Stress<dim> &s) { return s; });
+};
 /// `as_case(use)`: where the law is compiled in several cases, calls `use` with the one that fits its parameters.
 template <class OneLaw>
 concept as_case = requires(const OneLaw &law) {

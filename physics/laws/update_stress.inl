@@ -77,7 +77,11 @@ struct PointBlock {
       around.friction = friction.value[0][i];
     if constexpr (strained) {
       s = strained_by(law, s, take<Strain<dim>>(strain, i), h, around);
-      s = rotated(s, take<decltype(Increment<dim>::rotation)>(rotation, i));
+      const auto R = take<decltype(Increment<dim>::rotation)>(rotation, i);
+      s = rotated(s, R);
+      if constexpr (member::turn<OneLaw, dim>)
+        OneLaw::template turn<dim>(
+            h, [&R](const Stress<dim> &t) __attribute__((always_inline)) { return rotated(t, R); });
     } else {
       law.correct(s, h, around);
     }

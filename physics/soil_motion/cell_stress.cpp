@@ -8,18 +8,19 @@ namespace talus {
 
 template <int dim>
 void CellStress<dim>::find(const FilledGrid<dim> &grid, const std::vector<PointSet> &points,
-                           const SoilState<dim> &state, Locking locking, PatchMeans &patches) {
+                           const std::vector<double *> &stress, const SoilState<dim> &state, Locking locking,
+                           PatchMeans &patches) {
   constexpr int components = stress_size<dim>;
   const int cells = grid.cell_count();
   const double *particle_volume = state.particle_volume.data(), *weight = state.weight.data();
   std::fill_n(mean_.begin(), cells, std::array<double, components>{});
   for (size_t b = 0; b < points.size(); ++b) {
     const PointSet &p = points[b];
-    const double *stress = state.stress[b], *volume = state.volume[b];
+    const double *volume = state.volume[b];
     for (int q = 0; q < p.count; ++q) {
       auto &sum = mean_[p.cell[q]];
       const double share = volume[q] / particle_volume[p.cell[q]];
-      for (int s = 0; s < components; ++s) sum[s] += share * stress[q * components + s];
+      for (int s = 0; s < components; ++s) sum[s] += share * stress[b][q * components + s];
     }
   }
   if (locking != Locking::patches) return;

@@ -16,9 +16,10 @@ class CellStress {
  public:
   explicit CellStress(int cells) { make_room(mean_, cells); }
 
-  /// Means over the points of a state, weighted by their volumes, and their pressure over patches, (4.7).
-  void find(const FilledGrid<dim> &grid, const std::vector<PointSet> &points, const SoilState<dim> &state,
-            Locking locking, PatchMeans &patches);
+  /// Means of `stress` [body][point][stress_size] over the points of a state, weighted by their volumes, and of its
+  /// pressure over patches, (4.7).
+  void find(const FilledGrid<dim> &grid, const std::vector<PointSet> &points, const std::vector<double *> &stress,
+            const SoilState<dim> &state, Locking locking, PatchMeans &patches);
   /// Forces of a cell on its nodes [N].
   std::array<Vec<dim>, dim + 1> forces(int cell, const SoilState<dim> &state) const {
     const auto &s = mean_[cell];
@@ -35,6 +36,15 @@ class CellStress {
       for (int d = 0; d < dim; ++d) force[k + 1][d] = -f[d], force[0][d] += f[d];
     }
     return force;
+  }
+  /// Force per area on soil in a cell through a face of outward normal n: sigma n [Pa].
+  Vec<dim> traction(int cell, const Vec<dim> &n) const {
+    const auto &s = mean_[cell];
+    if constexpr (dim == 2)
+      return {s[0] * n[0] + s[3] * n[1], s[3] * n[0] + s[1] * n[1]};
+    else
+      return {s[0] * n[0] + s[3] * n[1] + s[5] * n[2], s[3] * n[0] + s[1] * n[1] + s[4] * n[2],
+              s[5] * n[0] + s[4] * n[1] + s[2] * n[2]};
   }
 
  private:

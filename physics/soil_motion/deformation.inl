@@ -110,7 +110,8 @@ PetscErrorCode SoilMotion<dim, Phases>::accept(double t, const double *u, const 
   PetscCall(deform(t, displacement, accepted_));
   accepted_time_ = t;
   conditions_.add_work(displacement);
-  work_.add(grid_, displacement, loading.gravity_at(loading.set_at), extra_mass(), loading.damping > 0);
+  work_.add(grid_, displacement, loading.gravity_at(loading.set_at), extra_mass(), loading.damping > 0 || damped());
+  if (damped()) work_.add_damping(grid_, displacement, rayleigh_.forces());
   measures_.move<dim>(grid_, velocity.data());
   PetscFunctionReturn(0);
 }

@@ -40,6 +40,8 @@ struct NodalVelocities {
   double own_share_at(double t) const {
     return relaxation_time > 0 ? kept * std::exp(-(t - remap_time) / relaxation_time) : kept;
   }
+  /// Share of `start` that nodes do not map back with the rest, docs/theory (4.9).
+  double share_not_mapped(double t) const { return relaxes ? own_share_at(t) : kept; }
   /// Share by which nodes relax in a step [s], docs/theory (4.10).
   double relaxed_in(double step) const { return 1 - std::exp(-step / relaxation_time); }
   /// Once `start` is known: what of it mapping to particles and back, `map(in, out)`, loses on so many nodes.

@@ -96,21 +96,22 @@ template <int dim, class Phases>
 PetscErrorCode SoilMotion<dim, Phases>::begin_results(double t) {
   PetscFunctionBeginUser;
   PetscCall(begin(t));
-  PetscCall(find_moving(t));
+  PetscCall(find_moving(t, velocities_.now.data(), velocities_.own_share, Phases::liquid));
   PetscFunctionReturn(0);
 }
 
+/// Velocity, into `velocities_.moving`, at which nodes move that have the velocity `v` at time t, docs/theory (4.9);
+/// `mapped`: it is mapped back already. `own` is the share of the start that is not mapped.
 template <int dim, class Phases>
-PetscErrorCode SoilMotion<dim, Phases>::find_moving(double t) {
+PetscErrorCode SoilMotion<dim, Phases>::find_moving(double t, const Vec<dim> *v, double own, bool mapped) {
   PetscFunctionBeginUser;
   const int nodes = grid_.node_count();
   std::vector<Vec<dim>> &moving = velocities_.moving;
-  std::copy_n(velocities_.now.begin(), nodes, moving.begin());
-  if constexpr (!Phases::liquid) {  // where fluids move, nodes have what is mapped back already
-    const double own = velocities_.own_share;
+  std::copy_n(v, nodes, moving.begin());
+  if (!mapped) {
     for (int i = 0; i < nodes; ++i) add_scaled<dim>(moving[i], -own, velocities_.start[i]);
     std::copy_n(moving.begin(), nodes, scratch_.begin());
-    PetscCall(to_particles_and_back(scratch_.data(), moving.data()));
+    PetscCall((talus::to_particles_and_back<dim, 1>(grid_, scratch_.data(), moving.data())));
     for (int i = 0; i < nodes; ++i) add_scaled<dim>(moving[i], own, velocities_.start[i]);
   }
   conditions_.constrain(loading.time_at(t), grid_, moving.data(), true);
@@ -245,7 +246,7 @@ PetscErrorCode SoilMotion<dim, Phases>::balance(double t, Balance *sums) {
     return std::sqrt(s);
   };
   for (int i = 0; i < grid_.node_count(); ++i) {
-    if (!mesh_.owned[grid_.mesh_node[i]]) continue;
+    if (!mesh_.counted[grid_.mesh_node[i]]) continue;
     local[0] += magnitude(scratch_[i]);
   }
   std::fill_n(force_.begin(), grid_.node_count(), Vec<dim>{});
@@ -255,7 +256,7 @@ PetscErrorCode SoilMotion<dim, Phases>::balance(double t, Balance *sums) {
   conditions_.add_reactions(force_.data());
   const Vec<dim> gravity = loading.gravity_at(loading.set_at);
   for (int i = 0; i < grid_.node_count(); ++i) {
-    if (!mesh_.owned[grid_.mesh_node[i]]) continue;
+    if (!mesh_.counted[grid_.mesh_node[i]]) continue;
     for (int d = 0; d < dim; ++d) force_[i][d] += grid_.mass[i] * gravity[d];
     local[1] += magnitude(force_[i]);
   }
@@ -278,7 +279,7 @@ PetscErrorCode SoilMotion<dim, Phases>::balance(double t, Balance *sums) {
       const double volume = points_[b].volume[q] * (accepted_.weight[c] / accepted_.particle_volume[c]);
       local[3] += volume * stored_energy<dim>(bodies_[b]->law(), &points_[b].stress[q * components]);
     }
-  PetscCall(find_moving(t));
+  PetscCall(find_moving(t, velocities_.now.data(), velocities_.own_share, Phases::liquid));
   local[4] = talus::seen_square<dim, 1>(grid_, velocities_.moving.data());
   PetscCallMPI(MPI_Allreduce(local, total, 5 + dim, MPI_DOUBLE, MPI_SUM, mesh_.comm()));
   *sums = {total[0], total[1], total[2], total[3], {}, total[4]};

@@ -89,6 +89,7 @@ PetscErrorCode SoilMotion<dim, Phases>::map_back(double t, double gamma, double 
     PetscCall(to_particles_and_back(scratch_.data(), mapped));
     for (int i = 0; i < all; ++i)
       for (int d = 0; d < dim; ++d) mapped[i][d] += (1 - share) * before[i][d];
+    conditions_.keep_dashpots(velocity, mapped);
     constrain(t, mapped);
     for (int i = 0; i < all; ++i)
       for (int d = 0; d < dim; ++d) {
@@ -99,12 +100,14 @@ PetscErrorCode SoilMotion<dim, Phases>::map_back(double t, double gamma, double 
   }
   if (velocities_.relaxes) {
     PetscCall(to_particles_and_back(velocity, mapped));
+    conditions_.keep_dashpots(velocity, mapped);
     const double share = velocities_.relaxed_in(gamma), own = velocities_.own_share_at(t);
     for (int i = 0; i < nodes; ++i)
       for (int d = 0; d < dim; ++d) {
         velocity[i][d] += share * (mapped[i][d] - velocity[i][d]);
         mapped[i][d] += own * velocities_.unmapped_start[i][d];
       }
+    conditions_.keep_dashpots(velocity, mapped);
     constrain(t, velocity);
   } else {  // the same sum, mapped once
     for (int i = 0; i < nodes; ++i)
@@ -112,6 +115,7 @@ PetscErrorCode SoilMotion<dim, Phases>::map_back(double t, double gamma, double 
     PetscCall(to_particles_and_back(scratch_.data(), mapped));
     for (int i = 0; i < nodes; ++i)
       for (int d = 0; d < dim; ++d) mapped[i][d] += velocities_.kept * start[i][d];
+    conditions_.keep_dashpots(velocity, mapped);
   }
   constrain(t, mapped);
   PetscFunctionReturn(0);
@@ -121,8 +125,14 @@ PetscErrorCode SoilMotion<dim, Phases>::map_back(double t, double gamma, double 
 template <int dim, class Phases>
 PetscErrorCode SoilMotion<dim, Phases>::rates(double t, const double *u, const double *v, double *du, double *dv) {
   PetscFunctionBeginUser;
-  PetscCall(acceleration(t, u, v, dv));
   const int nodes = grid_.node_count(), all = nodes * fields;
+  if (damped()) {
+    Vec<dim> *skeleton = scratch_.data();
+    std::copy_n(reinterpret_cast<const Vec<dim> *>(v), nodes, skeleton);
+    conditions_.constrain(loading.time_at(t), grid_, skeleton, true);
+    PetscCall(find_moving(t, skeleton, velocities_.share_not_mapped(t), false));
+  }
+  PetscCall(accelerate(t, u, v, dv));
   const std::vector<Vec<dim>> &start = velocities_.start;
   Vec<dim> *supported = scratch_.data(), *mapped = reinterpret_cast<Vec<dim> *>(du),
            *change = reinterpret_cast<Vec<dim> *>(dv);

@@ -7,7 +7,7 @@ void WorkLedger<dim>::add(const FilledGrid<dim> &grid, const Vec<dim> *u, const 
                           const double *extra_mass, bool damped) {
   Vec<dim> weighted{};
   for (int i = 0; i < grid.node_count(); ++i) {
-    if (!grid.mesh().owned[grid.mesh_node[i]]) continue;
+    if (!grid.mesh().counted[grid.mesh_node[i]]) continue;
     const double m = grid.mass[i] + (extra_mass ? extra_mass[i] : 0);
     for (int d = 0; d < dim; ++d) weighted[d] += m * u[i][d];
     if (damped)

@@ -153,7 +153,10 @@ class Reduction {
     if (open() && energy && any_stable_) PetscCall(attempt_from(start_, &LimitState<dim>::search, &trial, interrupted));
     // soil with psi < phi takes a smaller step first
     const bool last = energy || !any_stable_ || narrow(stable_factor_, factor);
-    if (open() && last) PetscCall(attempt_from(stable_, &LimitState<dim>::move, &trial, interrupted));
+    if (open() && last && settings_.by_damped_motion)
+      PetscCall(attempt_from(stable_, &LimitState<dim>::move, &trial, interrupted));
+    else if (open() && last && !energy)
+      trial.outcome = TrialOutcome::mechanism;
     if (*interrupted) PetscFunctionReturn(0);
     if (trial.outcome == TrialOutcome::equilibrium)
       stable_ = problem_.save(), any_stable_ = true, stable_factor_ = factor;

@@ -44,6 +44,7 @@ struct ReductionSettings {
   int mechanisms = 1;                   ///< that are searched for
   bool stands = true;                   ///< the stages before ended in equilibrium
   bool by_own_flow = true;              ///< and soil moved there with its own dilation, not with psi = phi
+  bool by_damped_motion = true;         ///< where iterations stall; otherwise soil with psi < phi fails there
   const PoreFlow<dim> *flow = nullptr;  ///< of pore water that moves, for a factor without flow too; null: none does
   /// Is strength divided at this place, in an element of this size [m]? Empty: everywhere.
   std::function<bool(const Vec<dim> &, double)> divided;

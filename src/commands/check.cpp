@@ -125,6 +125,12 @@ void print_costs(const Scene &scene, const Needs &n) {
          n.critical_step / slowest.critical_step);
   line("", "%s", n.step_bound.c_str());
   line("", "%s %.4g s, %.2f of it", n.fixed_step ? "fixed at" : "taken", n.step, n.step / n.critical_step);
+  for (std::size_t i = 0; i < n.stages.size(); ++i)
+    if (const double damped = n.stages[i].damped_critical_step; damped > 0) {
+      const auto [lower, upper] = scene.stage[i].damping_frequencies();
+      line("", "critical %.4g s in stage %s, %.2g of that, by Rayleigh damping at %.3g and %.3g Hz", damped,
+           n.stages[i].name.c_str(), damped / n.critical_step, lower, upper);
+    }
   bool moves = false;  // in some stage
   line("stages", "%-16s %-12s %10s %10s %14s %12s", "", "until", "longest s", "steps", "wave transits", "run time");
   for (std::size_t i = 0; i < n.stages.size(); ++i) {
@@ -203,6 +209,7 @@ void print_json(const Scene &scene, const Needs &n) {
                       {"duration_s", s.duration},
                       {"steps", s.steps},
                       {"transits", s.transits},
+                      {"damped_critical_step_s", s.damped_critical_step},
                       {"run_time_s", s.run_time}});
   const Json page{
       {"title", scene.title},

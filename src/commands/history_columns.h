@@ -27,6 +27,7 @@ std::vector<std::string> possible_columns(const Scene &scene) {
   }
   RunRow<dim> row;
   row.fluids.resize(phases.fluids()), row.handed.resize(phases.fluids());
+  if (!scene.earthquake.empty()) row.ground.emplace();
   for (const bool loads : {false, true})
     for (const BoundarySource &one : scene.boundary) {
       BoundaryRow<dim> boundary;

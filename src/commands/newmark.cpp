@@ -63,6 +63,7 @@ class YieldSearch {
     inertia.name = "inertia", inertia.kind = keys, inertia.duration = 1, inertia.softening = false;
     scene_.stage.push_back(inertia);
     scene_.add_factor_stage();
+    scene_.factor_of_safety->by_damped_motion = false;
   }
 
   /// `direction`: 1, -1, or 0 for the one in which the slope is weaker.
@@ -117,7 +118,7 @@ class YieldSearch {
     options.pictures = options.checkpoints = false;
     const auto simulation = make_simulation(PETSC_COMM_WORLD, scene_, options);
     last_ = simulation->factor_of_safety();
-    if (!last_.decided || !(last_.lower > 0 && last_.upper > 0))
+    if (last_.failed() || !(last_.lower > 0 && last_.upper > 0))
       throw std::runtime_error("no factor of safety was found with a coefficient of " + rounded(coefficient));
     double stiffness = 0, mass = 0;
     const std::vector<BodyReport> bodies = simulation->bodies();
@@ -189,26 +190,69 @@ std::string in_centimetres(const Estimate &estimate) {
          " to " + rounded(100 * estimate.median * std::exp(estimate.deviation)) + ")";
 }
 
+/// One line per motion, and what share of them remains below three of the displacements.
+void print_table(const std::vector<Slid> &all, double magnitude) {
+  std::printf("%-24s %8s %8s | %8s %8s %9s %8s%s\n", "motion", "peak", "Arias", "block", "reversed", "decoupled",
+              "Jibson", magnitude > 0 ? "     Bray" : "");
+  std::printf("%-24s %8s %8s | %8s %8s %9s %8s%s\n", "", "[g]", "[m/s]", "[cm]", "[cm]", "[cm]", "[cm]",
+              magnitude > 0 ? "     [cm]" : "");
+  std::vector<double> largest;
+  for (const Slid &one : all) {
+    std::printf("%-24s %8.3g %8.3g | %8.3g %8.3g %9.3g %8.3g", one.name.c_str(),
+                one.intensity.peak_acceleration / gravity, one.intensity.arias, 100 * one.way.back(),
+                100 * one.reversed.back(), 100 * one.decoupled, 100 * one.ratio.median);
+    if (magnitude > 0) std::printf(" %8.3g", 100 * one.bray.median);
+    std::printf("\n");
+    largest.push_back(one.largest());
+  }
+  std::ranges::sort(largest);
+  const auto quantile = [&](double share) {
+    const double place = share * static_cast<double>(largest.size() - 1);
+    const auto k = std::min(static_cast<std::size_t>(place), largest.size() - 2);
+    return 100 * std::lerp(largest[k], largest[k + 1], place - static_cast<double>(k));
+  };
+  std::printf("rigid block, the larger of both ways: median %.3g cm, 16 to 84 %% of the %zu motions %.3g to %.3g cm\n",
+              quantile(0.5), all.size(), quantile(0.16), quantile(0.84));
+}
+
 void print(const Yielding &slope, const std::vector<Slid> &all, double magnitude) {
   std::printf("yield coefficient %.3f, inertia towards %s\n", slope.coefficient, slope.direction > 0 ? "+x" : "-x");
   std::printf("  slides from x = %.4g to %.4g m, %.3g m high; period 4 H / v_s = %.3g s with v_s = %.3g m/s\n",
               slope.mechanism.low[0], slope.mechanism.high[0], slope.height, slope.period(), slope.shear_wave_speed);
-  for (const Slid &one : all) {
-    std::printf("%s: peak %.3g g, Arias %.3g m/s\n", one.name.c_str(), one.intensity.peak_acceleration / gravity,
-                one.intensity.arias);
-    std::printf("  rigid block              %8.3g cm, reversed motion %.3g cm\n", 100 * one.way.back(),
-                100 * one.reversed.back());
-    std::printf("  as on level ground       %8.3g cm, with the same yield coefficient both ways\n",
-                100 * one.level_ground);
-    std::printf("  decoupled from the layer %8.3g cm\n", 100 * one.decoupled);
-    if (one.ratio.median > 0)
-      std::printf("  Jibson (2007)            a_c/a_max %s; Arias %s%s%s\n", in_centimetres(one.ratio).c_str(),
-                  in_centimetres(one.of_arias).c_str(), magnitude > 0 ? "; magnitude " : "",
-                  magnitude > 0 ? in_centimetres(one.with_magnitude).c_str() : "");
-    if (magnitude > 0 && slope.period() <= 0.7)
-      std::printf("  Bray & Macedo (2019)     %s; does not move with a probability of %.2g\n",
-                  in_centimetres(one.bray).c_str(), one.bray.none);
+  if (all.size() > 1) {
+    print_table(all, magnitude);
+    return;
   }
+  const Slid &one = all.front();
+  std::printf("%s: peak %.3g g, Arias %.3g m/s\n", one.name.c_str(), one.intensity.peak_acceleration / gravity,
+              one.intensity.arias);
+  std::printf("  rigid block              %8.3g cm, reversed motion %.3g cm\n", 100 * one.way.back(),
+              100 * one.reversed.back());
+  std::printf("  as on level ground       %8.3g cm, with the same yield coefficient both ways\n",
+              100 * one.level_ground);
+  std::printf("  decoupled from the layer %8.3g cm\n", 100 * one.decoupled);
+  if (one.ratio.median > 0)
+    std::printf("  Jibson (2007)            a_c/a_max %s; Arias %s%s%s\n", in_centimetres(one.ratio).c_str(),
+                in_centimetres(one.of_arias).c_str(), magnitude > 0 ? "; magnitude " : "",
+                magnitude > 0 ? in_centimetres(one.with_magnitude).c_str() : "");
+  if (magnitude > 0 && slope.period() <= 0.7)
+    std::printf("  Bray & Macedo (2019)     %s; does not move with a probability of %.2g\n",
+                in_centimetres(one.bray).c_str(), one.bray.none);
+}
+
+/// Numbers of a motion, as in newmark.json and newmark.csv.
+std::vector<std::pair<const char *, double>> numbers_of(const Slid &one) {
+  return {{"peak_acceleration_m_s2", one.intensity.peak_acceleration},
+          {"arias_m_s", one.intensity.arias},
+          {"significant_duration_s", one.intensity.significant_end - one.intensity.significant_begin},
+          {"rigid_block_m", one.way.back()},
+          {"reversed_m", one.reversed.back()},
+          {"level_ground_m", one.level_ground},
+          {"decoupled_m", one.decoupled},
+          {"jibson_2007_ratio_m", one.ratio.median},
+          {"jibson_2007_magnitude_m", one.with_magnitude.median},
+          {"jibson_2007_arias_m", one.of_arias.median},
+          {"bray_macedo_2019_m", one.bray.median}};
 }
 
 nlohmann::ordered_json json_of(const Yielding &slope, const std::vector<std::array<double, 2>> &trials,
@@ -220,30 +264,58 @@ nlohmann::ordered_json json_of(const Yielding &slope, const std::vector<std::arr
                                   {"high_m", slope.mechanism.high},
                                   {"slip_surface_m", slope.mechanism.slip_surface},
                                   {"period_s", slope.period()}};
-  for (const Slid &one : all)
-    document["motions"].push_back({{"name", one.name},
-                                   {"peak_acceleration_m_s2", one.intensity.peak_acceleration},
-                                   {"arias_m_s", one.intensity.arias},
-                                   {"rigid_block_m", one.way.back()},
-                                   {"reversed_m", one.reversed.back()},
-                                   {"level_ground_m", one.level_ground},
-                                   {"decoupled_m", one.decoupled},
-                                   {"jibson_2007_ratio_m", one.ratio.median},
-                                   {"jibson_2007_magnitude_m", one.with_magnitude.median},
-                                   {"jibson_2007_arias_m", one.of_arias.median},
-                                   {"bray_macedo_2019_m", one.bray.median}});
+  for (const Slid &one : all) {
+    nlohmann::ordered_json motion{{"name", one.name}};
+    for (const auto &[name, value] : numbers_of(one)) motion[name] = value;
+    document["motions"].push_back(std::move(motion));
+  }
   return document;
+}
+
+/// One line per motion.
+std::string table_of(const std::vector<Slid> &all) {
+  std::ostringstream table;
+  table.precision(8);
+  table << "motion";
+  for (const auto &[name, value] : numbers_of(all.front())) table << ',' << name;
+  table << '\n';
+  for (const Slid &one : all) {
+    table << csv_field(one.name);
+    for (const auto &[name, value] : numbers_of(one)) table << ',' << value;
+    table << '\n';
+  }
+  return table.str();
+}
+
+void write(const std::string &path, const std::string &text) {
+  std::ofstream out(path);
+  out << text;
+  out.close();
+  if (!out) throw std::runtime_error("cannot write " + path);
 }
 
 void write_history(const std::string &path, const Slid &one) {
   std::ofstream csv(path);
   csv << "time_s,acceleration_m_s2,way_m,reversed_way_m\n";
   csv.precision(8);
-  for (std::size_t k = 0; k < one.way.size(); ++k)
-    csv << static_cast<double>(k) * one.motion.step << ',' << one.motion.acceleration[k] << ',' << one.way[k] << ','
-        << one.reversed[k] << '\n';
+  const auto value = [](const std::vector<double> &of, std::size_t k, double after) {
+    return k < of.size() ? of[k] : after;
+  };
+  for (std::size_t k = 0; k < std::max(one.way.size(), one.reversed.size()); ++k)
+    csv << static_cast<double>(k) * one.motion.step << ',' << value(one.motion.acceleration, k, 0) << ','
+        << value(one.way, k, one.way.back()) << ',' << value(one.reversed, k, one.reversed.back()) << '\n';
   csv.close();
   if (!csv) throw std::runtime_error("cannot write " + path);
+}
+
+/// A name that no other motion has, nor a table of all of them.
+std::string own_name(const std::string &name, const std::vector<std::pair<std::string, GroundMotion>> &others) {
+  const auto taken = [&](const std::string &one) {
+    return one == "newmark" || std::ranges::any_of(others, [&](const auto &other) { return other.first == one; });
+  };
+  std::string own = name;
+  for (int k = 2; taken(own); ++k) own = name + "_" + std::to_string(k);
+  return own;
 }
 
 int newmark(const NewmarkArguments &arguments) {
@@ -253,7 +325,8 @@ int newmark(const NewmarkArguments &arguments) {
   std::vector<std::pair<std::string, GroundMotion>> motions;
   if (!scene.earthquake.empty()) motions.emplace_back("earthquake", along_x(GroundShaking(scene.earthquake)));
   for (const std::string &record : arguments.records)
-    motions.emplace_back(std::filesystem::path(record).stem().string(), read_motion(record_source(record)));
+    motions.emplace_back(own_name(std::filesystem::path(record).stem().string(), motions),
+                         read_motion(record_source(record)));
   if (motions.empty())
     throw std::invalid_argument(file + " has no [[earthquake]]: add one, or give records by --record");
   const std::string dir =
@@ -267,11 +340,12 @@ int newmark(const NewmarkArguments &arguments) {
   if (rank) return 0;
   print(slope, all, arguments.magnitude);
   std::filesystem::create_directories(dir);
-  std::ofstream(dir + "/newmark.json") << json_of(slope, search.trials(), all).dump(1) << '\n';
+  write(dir + "/newmark.json", json_of(slope, search.trials(), all).dump(1) + '\n');
+  write(dir + "/newmark.csv", table_of(all));
   std::vector<std::string> names;
   for (const Slid &one : all) write_history(dir + "/" + one.name + ".csv", one), names.push_back(one.name);
   const bool drawn = !arguments.no_pictures && draw_newmark(dir, names);
-  std::printf("results are in %s: %snewmark.json and the way over time of each motion\n", dir.c_str(),
+  std::printf("results are in %s: %snewmark.json, newmark.csv and the way over time of each motion\n", dir.c_str(),
               drawn ? "newmark.png, " : "");
   return drawn || arguments.no_pictures ? 0 : 1;
 }
@@ -283,7 +357,9 @@ Action add_newmark(CLI::App &app) {
   CLI::App *command = app.add_subcommand(
       "newmark", "yield coefficient of a slope, and how far it slides in earthquakes as a rigid block (Newmark 1965)");
   command->add_option("SCENE", arguments->scene, "scene file (.toml) or the name of a gallery scene")->required();
-  command->add_option("--record", arguments->records, "records beside the scene's [[earthquake]], as of its key file")
+  command
+      ->add_option("--record", arguments->records,
+                   "records beside the scene's [[earthquake]], as of its key file: one line of a table each")
       ->take_all();
   command
       ->add_option("--direction", arguments->direction,

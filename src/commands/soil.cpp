@@ -77,7 +77,9 @@ void write_csv(const std::string &path, const Job &job, const ElementTest &test,
   for (const char *name : Control::strain_keys) csv << ',' << name;
   for (const char *name : Control::stress_keys) csv << ',' << name << "_Pa";
   csv << ",pore_pressure_Pa,mean_pressure_Pa,deviator_Pa,compression,void_ratio,suction_Pa,time_s";
-  for (const HistoryField &field : history_fields(job.law)) csv << ',' << field.name;
+  const auto fields = history_fields(job.law);
+  for (const HistoryField &field : fields)
+    if (!field.of_tensor) csv << ',' << field.name;
   csv << '\n';
   csv.precision(12);
   for (std::size_t k = 0; k < states.size(); ++k) {
@@ -88,7 +90,8 @@ void write_csv(const std::string &path, const Job &job, const ElementTest &test,
     csv << ',' << s.pore_pressure << ',' << s.mean_pressure() << ',' << s.deviator() << ',' << s.compression() << ',';
     if (test.void_ratio > 0) csv << (1 + test.void_ratio) * std::exp(-s.compression()) - 1;
     csv << ',' << s.suction << ',' << s.time;
-    for (double value : s.history) csv << ',' << value;
+    for (std::size_t h = 0; h < fields.size(); ++h)
+      if (!fields[h].of_tensor) csv << ',' << s.history[h];
     csv << '\n';
   }
   csv.close();

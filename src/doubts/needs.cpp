@@ -197,6 +197,10 @@ Needs find_needs(Scene &scene, bool with_model) {
   needs.layer = layer_of(start, needs.bodies);
   const StepRule rule = step_rule(read_integrator(scene.integrator, fluids_move(scene.phases)));
   needs.critical_step = simulation->critical_step();
+  std::vector<double> critical_steps;
+  for (const Stage &stage : scene.stage)
+    critical_steps.push_back(stage.damping_frequencies()[1] > 0 ? simulation->critical_step(stage.damping_frequencies())
+                                                                : needs.critical_step);
   needs.step_bound = simulation->step_bound();
   needs.altitude_rule = needs.mesh.smallest_altitude / fastest;
   needs.fixed_step = rule.fixed > 0;
@@ -208,12 +212,13 @@ Needs find_needs(Scene &scene, bool with_model) {
     if (stage.is_static()) {  // by finite elements: no waves, no steps of the motion
       needs.stages.push_back({stage.name, stage.duration,
                               stage.finite_elements() ? static_cast<double>(stage.finite_elements()->load_steps) : 0, 0,
-                              0});
+                              0, 0});
       continue;
     }
-    const double steps = std::ceil(stage.duration / needs.step);
-    needs.stages.push_back(
-        {stage.name, stage.duration, steps, steps * needs.seconds_per_step, stage.duration / needs.layer.transit});
+    const double critical = critical_steps[needs.stages.size()];
+    const double steps = std::ceil(stage.duration / (needs.fixed_step ? needs.step : rule.share * critical));
+    needs.stages.push_back({stage.name, stage.duration, steps, steps * needs.seconds_per_step,
+                            stage.duration / needs.layer.transit, stage.damping_frequencies()[1] > 0 ? critical : 0});
     needs.snapshots +=
         scene.output->interval > 0 ? static_cast<long long>(std::ceil(stage.duration / scene.output->interval)) : 1;
   }

@@ -29,10 +29,11 @@ struct LayerNeeds {
 
 struct StageNeeds {
   std::string name;
-  double duration;  ///< longest [s]
-  double steps;     ///< in that time
-  double run_time;  ///< estimated [s]
-  double transits;  ///< of the layer by a wave
+  double duration;              ///< longest [s]
+  double steps;                 ///< in that time
+  double run_time;              ///< estimated [s]
+  double transits;              ///< of the layer by a wave
+  double damped_critical_step;  ///< under its Rayleigh damping [s]; 0: it has none
 };
 
 /// Conductivities at which Terzaghi's T = c_v t / L^2, with c_v = k_h M / gamma_w, has the values 10 and 0.01: pore
@@ -54,10 +55,10 @@ struct Needs {
   Drainage drainage;                ///< time = 0 without gravity
   double gravity;                   ///< [m/s2]
   int slowest;                      ///< body that sets the critical step
-  double critical_step;             ///< [s]
+  double critical_step;             ///< without Rayleigh damping [s]
   std::string step_bound;           ///< what it is taken from, as a sentence
   double altitude_rule;             ///< smallest altitude over the largest wave speed [s]
-  double step;                      ///< taken [s]
+  double step;                      ///< taken without Rayleigh damping [s]
   bool fixed_step;                  ///< given by the scene
   int burst_steps = 0;              ///< timed
   double seconds_per_step = 0;      ///< of wall time, of soil at rest

@@ -27,19 +27,22 @@ double first_root(double a, double b, double c, double end) {
 }  // namespace
 
 std::vector<double> sliding_block(const GroundMotion &motion, double yield, double uphill) {
+  constexpr double round_off = 1e-9;  // of accelerations
   const std::vector<double> &a = motion.acceleration;
-  std::vector<double> way(a.size());
+  std::vector<double> way{0};
   double v = 0, x = 0;  // of the block against the ground, positive downhill
   int slips = 0;        // 1: downhill, -1: uphill
-  for (std::size_t k = 0; k + 1 < a.size(); ++k) {
-    const double rate = (a[k + 1] - a[k]) / motion.step;
+  for (std::size_t k = 0; k + 1 < a.size() || slips != 0; ++k) {
+    const bool shakes = k + 1 < a.size();
+    const double first = shakes ? a[k] : 0, rate = shakes ? (a[k + 1] - a[k]) / motion.step : 0;
     double t = 0;
     while (t < motion.step) {
-      const double now = a[k] + rate * t, left = motion.step - t;
+      const double now = first + rate * t, left = motion.step - t;
       if (slips == 0) {
-        if (now > yield || (now == yield && rate > 0))
+        const double over = now / yield - 1, over_uphill = uphill > 0 ? -now / uphill - 1 : -1;
+        if (over > round_off || (over > -round_off && rate > 0))
           slips = 1;
-        else if (uphill > 0 && (-now > uphill || (-now == uphill && rate < 0)))
+        else if (over_uphill > round_off || (over_uphill > -round_off && rate < 0))
           slips = -1;
       }
       if (slips == 0) {  // until the ground passes one of the accelerations
@@ -51,6 +54,11 @@ std::vector<double> sliding_block(const GroundMotion &motion, double yield, doub
         continue;
       }
       const double excess = slips > 0 ? now - yield : now + uphill;  // acceleration of the block against the ground
+      if (slips * excess < 0 && slips * rate <= 0 &&
+          std::abs(v) <= 1e-12 * motion.step * std::abs(excess)) {  // it hardly began
+        v = 0, slips = 0;
+        continue;
+      }
       const double stops = first_root(v, excess, rate / 2, left), dt = stops > 0 ? stops : left;
       x += dt * (v + dt * (excess / 2 + dt * rate / 6));
       v = stops > 0 ? 0 : v + dt * (excess + dt * rate / 2);
@@ -58,7 +66,7 @@ std::vector<double> sliding_block(const GroundMotion &motion, double yield, doub
       if (stops > 0) slips = 0;
       if (stops > 0 && dt <= 1e-12 * motion.step) break;
     }
-    way[k + 1] = x;
+    way.push_back(x);
   }
   return way;
 }

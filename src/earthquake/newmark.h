@@ -6,10 +6,10 @@
 
 namespace talus {
 
-/// Way of a block against the ground over time, at the values of the record [m]. It slips down the slope while the
-/// ground accelerates uphill by more than the yield acceleration, until both have one velocity again; `uphill` > 0 lets
-/// it slip up the slope too, beyond that acceleration. The motion is positive uphill. Exact for acceleration that is
-/// linear between its values.
+/// Way of a block against the ground over time, at the values of the record, and at its step after its end until the
+/// block is at rest [m]. It slips down the slope while the ground accelerates uphill by more than the yield
+/// acceleration, which is above 0, until both have one velocity again; `uphill` > 0 lets it slip up the slope too,
+/// beyond that acceleration. The motion is positive uphill. Exact for acceleration that is linear between its values.
 std::vector<double> sliding_block(const GroundMotion &motion, double yield, double uphill = 0);
 
 /// An estimate of a displacement: its median, and the standard deviation of its natural logarithm [m], [-].

@@ -45,8 +45,9 @@ struct BodySource {
   DeferredTable retention;                                            ///< [body.NAME.retention], read by physics/pores
   DeferredTable relative_permeability;                                ///< [body.NAME.relative_permeability], likewise
   int particles_per_cell = 0;                                         ///< 0: 3 a triangle, 4 a tetrahedron
-  double k0 = 0;           ///< lateral over vertical effective stress at rest [-]; 0: 1 - sin phi (Jaky 1944)
-  double volume_cap = -1;  ///< largest volume over rest volume; 0: none; -1: 1 for soil that comes apart, else none
+  double k0 = 0;             ///< lateral over vertical effective stress at rest [-]; 0: 1 - sin phi (Jaky 1944)
+  double damping_ratio = 0;  ///< of Rayleigh damping, at both frequencies of a stage [-]
+  double volume_cap = -1;    ///< largest volume over rest volume; 0: none; -1: 1 for soil that comes apart, else none
   double averaging_length = 0;     ///< l of the average of plastic strain that the law takes for its own [m]; 0: none
   std::vector<Function> velocity;  ///< initial velocity, functions of the place [m/s]
   std::vector<Function> displacement;  ///< initial displacement, functions of the undeformed place [m]
@@ -98,6 +99,9 @@ struct BodySource {
     v.number("k0", k0, one, Range{0, 10, {0.2, 3, or_zero}},
              "ratio of lateral to vertical effective stress at rest, for stages with initial_stress = \"k0\"; 0: 1 - "
              "sin(friction_angle)");
+    v.number("damping_ratio", damping_ratio, one, Range{0, 0.5, {0.002, 0.2, or_zero}},
+             "Rayleigh damping: ratio of critical damping that the soil has at both damping_frequencies of a stage, "
+             "about a minimum between them; acts in stages with damping_frequencies");
     v.number("volume_cap", volume_cap, one, Range{-1, 100, {-1, 2}},
              "largest ratio of the volume of a particle to that which it has without stress and gaps; 0: no cap; -1: a "
              "cap of 1 for soil that comes apart, where pore fluids do not move");

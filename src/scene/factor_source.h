@@ -13,6 +13,8 @@ struct FactorSource {
   std::vector<std::vector<double>> along;   ///< line x, elevation [m]; empty: everywhere
   double width = 0;                         ///< of the band along the line [m]; 0: two cells
   int mechanisms = 1;
+  bool by_damped_motion = true;  ///< no key: trials that iterations leave undecided go by damped motion, which takes
+                                 ///< minutes; otherwise soil with psi < phi fails there
   template <class Visitor>
   void fields(Visitor &&v) {
     v.points(

@@ -42,6 +42,7 @@ class Checks {
     for (std::size_t i = 0; i < scene_.stage.size(); ++i)
       if (scene_.stage[i].name.empty()) scene_.stage[i].name = std::to_string(i);
     for (std::size_t i = 0; i < scene_.stage.size(); ++i) stage(scene_.stage[i], "stage." + std::to_string(i));
+    for (const BodySource &body : scene_.body) damping_ratio("body." + body.name, body);
     bodies_that_come_and_go();
     ground_motion();
     factor_of_safety();
@@ -415,6 +416,7 @@ class Checks {
     if (stage.shakes() && stage.damping() > 0)
       reader_.complain(path + ".damping",
                        "must be 0 in an earthquake: local damping takes a share of all motion, whatever its frequency");
+    if (stage.motion() && !stage.motion()->damping_frequencies.empty()) rayleigh(stage, path + ".damping_frequencies");
     if (stage.begins_at_rest() && !gravity_is_down())
       reader_.complain(path + ".initial_stress",
                        "needs gravity along -" + up() + ", since it counts the soil above along " + up() +
@@ -422,6 +424,29 @@ class Checks {
     if (stage.finds_factor()) factor(stage, path);
     const auto *fails = stage.motion() ? std::get_if<AtFailure>(&stage.motion()->until) : nullptr;
     if (fails) failure(*fails, path);
+  }
+
+  void rayleigh(const Stage &stage, const std::string &path) const {
+    const std::vector<double> &frequencies = stage.motion()->damping_frequencies;
+    if (frequencies.size() != 2) reader_.complain(path, "must be two frequencies, the lower one first");
+    for (const double f : frequencies)
+      if (!(f >= 0.01 && f <= 1000)) reader_.complain(path, "must be frequencies from 0.01 to 1000 Hz");
+    if (!(frequencies[0] < frequencies[1])) reader_.complain(path, "must be two frequencies, the lower one first");
+    if (stage.damping() > 0)
+      reader_.complain(path,
+                       "is a second damping beside damping = " + shortest(stage.damping()) + ": give one of them");
+    if (std::ranges::none_of(scene_.body, [](const BodySource &body) { return body.damping_ratio > 0; }))
+      reader_.complain(path, "has no effect without the damping_ratio of a body; give it, or leave this out");
+    if (scene_.water->drag == PoreDrag::at_start)
+      reader_.complain(path,
+                       "cannot be combined with water.drag = \"explicit\", which needs the same part of the step");
+  }
+
+  void damping_ratio(const std::string &path, const BodySource &body) const {
+    const auto damped = [](const Stage &stage) { return stage.damping_frequencies()[1] > 0; };
+    if (body.damping_ratio > 0 && std::ranges::none_of(scene_.stage, damped))
+      reader_.complain(path + ".damping_ratio",
+                       "has no effect without damping_frequencies of a stage of motion; give them, or leave this out");
   }
 
   /// It judges what finite elements have found, and its results have the name of the stage where there are several.

@@ -2,6 +2,7 @@
 /// [[stage]]: what happens one after another. Keys that all stages have, and the list of kinds: one name to add one.
 /// What they do: simulation/stages.
 #include <algorithm>
+#include <array>
 #include <concepts>
 #include <string>
 #include <type_traits>
@@ -75,6 +76,11 @@ struct Stage {
   double gravity_ramp() const { return motion() ? motion()->gravity_ramp : 0; }
   bool shakes() const { return motion() && motion()->earthquake; }
   double damping() const { return motion() ? motion()->damping : 0; }
+  /// Of Rayleigh damping [Hz]; 0: there is none.
+  std::array<double, 2> damping_frequencies() const {
+    if (!motion() || motion()->damping_frequencies.empty()) return {};
+    return {motion()->damping_frequencies[0], motion()->damping_frequencies[1]};
+  }
   bool begins_at_rest() const { return finite_elements() && finite_elements()->initial_stress == InitialStress::k0; }
   bool adds(const std::string &body) const {
     return finite_elements() && std::ranges::count(finite_elements()->add, body) > 0;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "scene/mesh_source.h"
 #include "scene/reader.h"
@@ -99,10 +100,16 @@ void Dynamics<dim>::check_fixed_step() {
       bound_.by == FrequencyBound::mesh || explicit_drag() ? critical_step() : std::numeric_limits<double>::infinity();
   if (std::isinf(critical))
     for (const BodyReport &body : world_.report()) critical = std::min(critical, body.critical_step);
+  bool damped = false;
+  for (const Stage &stage : world_.scene.stage) {
+    if (!(stage.damping_frequencies()[1] > 0)) continue;
+    damped = true, critical = std::min(critical, critical_step(stage.damping_frequencies()));
+  }
   if (rule.fixed > rule.limit * critical)
     world_.scene.complain("integrator.step", "must not exceed the critical step of " + rounded(rule.limit * critical) +
                                                  " s (" + rounded(2 * rule.limit) + " / omega_max of the filled cells" +
                                                  (explicit_drag() ? ", less for explicit drag" : "") +
+                                                 (damped ? ", less for Rayleigh damping" : "") +
                                                  "); take a smaller step, a coarser mesh, or leave step out");
 }
 
@@ -162,7 +169,7 @@ double Dynamics<dim>::critical_step() {
       require(world_.motion->largest_frequency(anew ? first : further, &omega_max_));
       omega_step_ = clock_.steps, moved_since_estimate_ = 0;
     }
-    step = std::max(step, 2 / omega_max_);
+    step = std::max(step, with_explicit_drag(2 / omega_max_, world_.damping_rate(omega_max_)));
   }
   if (explicit_drag()) {
     double mine = world_.motion->drag_rate(), rate;
@@ -172,10 +179,21 @@ double Dynamics<dim>::critical_step() {
   return step;
 }
 
+template <int dim>
+double Dynamics<dim>::critical_step(const std::array<double, 2> &damping_frequencies) {
+  std::array<double, 2> &acting = world_.motion->loading.damping_frequencies;
+  const std::array<double, 2> kept = std::exchange(acting, damping_frequencies);
+  const double step = critical_step();
+  acting = kept;
+  return step;
+}
+
 /// The critical step of the present state [s], which a fixed step must not exceed. Collective.
 template <int dim>
 double Dynamics<dim>::stable_step() {
   notice_release();
+  if (damping_frequencies_ != world_.motion->loading.damping_frequencies)
+    damping_frequencies_ = world_.motion->loading.damping_frequencies, critical_step_ = 0;
   if (critical_step_ == 0 || explicit_drag())
     critical_step_ = critical_step();  // drag follows saturation from step to step
   const StepRule rule = step_rule(settings_);
@@ -250,8 +268,8 @@ void Dynamics<dim>::refuse_broken() {
 template <int dim>
 void Dynamics<dim>::serialize(Archive &archive) {
   notice_release();
-  archive.serialize("dynamics", remaps_, since_sort_, critical_step_, shrink_, omega_max_, omega_step_,
-                    moved_since_estimate_, remap_due_);
+  archive.serialize("dynamics", remaps_, since_sort_, critical_step_, damping_frequencies_, shrink_, omega_max_,
+                    omega_step_, moved_since_estimate_, remap_due_);
   balancing_.serialize(archive);
   if (archive.reading()) integrator_ = make_integrator(settings_);  // the nodes are others
   integrator_->serialize(archive);

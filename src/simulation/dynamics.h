@@ -38,8 +38,9 @@ class Dynamics {
   void set_loading(const Stage &stage, double stage_time);
   /// One step, that does not pass the time `until`, and the remap if it is due. Throws RunFailure. Collective.
   Verdict cycle(double until);
-  /// Largest stable step of the present state [s]. Collective.
-  double critical_step();
+  /// Largest stable step of the present state [s]; under Rayleigh damping with these frequencies [Hz], if there is any.
+  /// Collective.
+  double critical_step(const std::array<double, 2> &damping_frequencies);
 
   const StepBound &step_bound() const { return bound_; }
   bool fixed_step() const { return step_rule(settings_).fixed > 0; }
@@ -60,6 +61,7 @@ class Dynamics {
   void check_fixed_step();
   bool explicit_drag() const;
   void notice_release();
+  double critical_step();
   double stable_step();
   void refuse_obstacle();
   Verdict agree();
@@ -70,10 +72,11 @@ class Dynamics {
   const StepBound bound_;
   const IntegratorSettings settings_;
   std::unique_ptr<Integrator> integrator_;
-  double critical_step_ = 0;         ///< at the last remap; 0: not known [s]
-  double shrink_ = 1;                ///< of the critical step since then
-  double omega_max_ = 0;             ///< of the filled mesh, at step omega_step_ [1/s]
-  double moved_since_estimate_ = 0;  ///< by nodes, in mean edges, up to the last remap
+  double critical_step_ = 0;                     ///< at the last remap; 0: not known [s]
+  std::array<double, 2> damping_frequencies_{};  ///< for which it is known [Hz]
+  double shrink_ = 1;                            ///< of the critical step since then
+  double omega_max_ = 0;                         ///< of the filled mesh, at step omega_step_ [1/s]
+  double moved_since_estimate_ = 0;              ///< by nodes, in mean edges, up to the last remap
   long long omega_step_ = -1, remaps_ = 0, since_sort_ = 0, known_releases_ = 0;
   bool remap_due_ = false, just_remapped_ = false;
   double work_of_rank_ = 0;  ///< in the last step

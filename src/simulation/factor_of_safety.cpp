@@ -308,6 +308,7 @@ FactorOfSafety FactorStage<dim>::search() {
   ReductionSettings<dim> settings;
   if (world.phases.liquid) settings.flow = &run_.statics.flow();
   settings.stands = run_.statics.lost_stages.empty(), settings.by_own_flow = settings.stands && !run_.statics.dilated;
+  settings.by_damped_motion = run_.scene.factor_of_safety->by_damped_motion;
   settings.load_time = run_.clock.load_time, settings.time = run_.clock.time;
   settings.shown_displacement = 0.01 * extent, settings.mechanisms = run_.scene.factor_of_safety->mechanisms;
   if (!region.everywhere())

@@ -362,6 +362,8 @@ class Model {
         return "base";
       case OnSoil::load:
         return "load";
+      case OnSoil::tied:
+        return "tied";
       case OnSoil::dashpot:
         return "dashpot";
     }

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -177,6 +178,7 @@ OutputFields<Point> output_fields(const PhaseTraits &phases,
   // The internal variables of the laws. A body whose law does not have a variable shows NaN there.
   for (const auto &body : bodies)
     for (const HistoryField &variable : history_fields(body->law())) {
+      if (variable.of_tensor) continue;
       const std::string name = variable.name;
       if (std::ranges::any_of(fields.list(), [&](const auto &field) { return field.name == name; })) continue;
       std::vector<int> index(bodies.size(), -1);  // of the variable in each body's history
@@ -207,6 +209,12 @@ struct BoundaryRow {
   typename RigidBases<dim>::Report base{};
 };
 
+/// Motion of the ground: of the base or, where a wave comes in, of the outcrop that [[earthquake]] states [m/s2],
+/// [m/s], [m].
+struct GroundRow {
+  std::array<double, 3> acceleration{}, velocity{}, displacement{};
+};
+
 /// The whole run in a row of history.csv: sums over all ranks.
 template <int dim>
 struct RunRow {
@@ -215,6 +223,7 @@ struct RunRow {
   double mass = 0;                  ///< of the particles [kg]
   double particles = 0;             ///< their number
   double load_time = 0;             ///< time that functions of the scene see [s]
+  std::optional<GroundRow> ground;  ///< where some stage shakes
   bool balanced = true;             ///< energy has a balance: not that of a mechanism, whose size is free
   EscapedSums escaped;              ///< what left the mesh and was taken out
   std::vector<FluidLedger> fluids;  ///< that move on their own: water, then gas
@@ -243,6 +252,12 @@ struct RunRow {
     of_run("mass", "kg", mass);
     of_run("particles", "-", particles);
     of_run("load_time", "s", load_time);
+    for (int d = 0; ground && d < dim; ++d) {
+      const string axis(1, "xyz"[d]);
+      part("ground_acceleration_" + axis, "ground_acceleration", axis, "m/s2", ground->acceleration[d]);
+      part("ground_velocity_" + axis, "ground_velocity", axis, "m/s", ground->velocity[d]);
+      part("ground_displacement_" + axis, "ground_displacement", axis, "m", ground->displacement[d]);
+    }
     of_run("escaped_particles", "-", escaped.particles);
     of_run("escaped_mass", "kg", escaped.mass);
     for (int d = 0; d < dim; ++d) {

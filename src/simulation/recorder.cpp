@@ -30,7 +30,8 @@ Recorder<dim>::Recorder(const Sources<dim> &of, const RunOptions &options)
       phases_(of.world.phases),
       options_(options),
       point_rows_(of.world, of.points),
-      ends_(of.world) {
+      ends_(of.world),
+      ground_path_(of.world.shaking) {
   check_pictures();
   check_intervals();
 }
@@ -203,6 +204,20 @@ void Recorder<dim>::write_columns() const {
   on_first_rank(of_.world.comm, [&] { replace_file(options_.directory + "/history_columns.csv", table); });
 }
 
+/// The ground stays where it is in stages that do not shake.
+template <int dim>
+GroundRow Recorder<dim>::ground_row() const {
+  GroundRow row;
+  const Loading<dim> &loading = of_.world.motion->loading;
+  if (loading.shaking) {
+    const double since = of_.clock.time - loading.shaken_since;
+    row = {loading.shaking->acceleration(since), loading.shaking->velocity(since), ground_path_.displacement(since)};
+  }
+  const std::array<double, 3> left = ground_path_.displacement(of_.world.shaking.duration());
+  for (int d = 0; d < 3; ++d) row.displacement[d] += static_cast<double>(shaken_before_) * left[d];
+  return row;
+}
+
 /// A row of the history with what needs no sum over ranks.
 template <int dim>
 RunRow<dim> Recorder<dim>::run_row() const {
@@ -211,6 +226,7 @@ RunRow<dim> Recorder<dim>::run_row() const {
   row.mass = world.total_mass, row.particles = static_cast<double>(world.particle_count);
   row.load_time = of_.clock.load_time;
   row.escaped = world.escaped.sums();
+  if (std::ranges::any_of(scene_.stage, [](const Stage &stage) { return stage.shakes(); })) row.ground = ground_row();
   row.fluids.resize(phases_.fluids());
   if (std::ranges::any_of(scene_.stage, [](const Stage &stage) { return stage.is_static(); }))
     row.handed.resize(row.fluids.size());

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "earthquake/ground_path.h"
 #include "output/checkpoint.h"
 #include "output/events.h"
 #include "output/history.h"
@@ -25,6 +26,7 @@ namespace talus {
 
 template <int dim>
 struct RunRow;
+struct GroundRow;
 
 /// What results are made from.
 template <int dim>
@@ -126,6 +128,7 @@ class Recorder {
   void name_columns();
   void write_columns() const;
   RunRow<dim> run_row() const;
+  GroundRow ground_row() const;
   void note_imbalance();
   void note_sharing();
   void note_steps();
@@ -147,6 +150,8 @@ class Recorder {
   double impulse_time_ = 0;  ///< since when forces are means [s]
   PointRows<dim> point_rows_;
   MeshEnds<dim> ends_;
+  GroundPath ground_path_;
+  long long shaken_before_ = 0;       ///< stages before the present one through which the motion has gone
   std::vector<std::string> changed_;  ///< keys of the scene that are others than before the run was resumed
   double told_escaped_ = 0;           ///< particles that had left when the log last said so
   double written_escaped_ = -1;       ///< particles in escaped.csv; -1: not known

@@ -14,8 +14,9 @@ namespace talus {
 
 template <int dim>
 void Recorder<dim>::begin_stage(const Stage &stage) {
-  if (!results_) return;
   const auto here = scene_.stage.begin() + (&stage - scene_.stage.data());
+  shaken_before_ = std::count_if(scene_.stage.begin(), here, [](const Stage &before) { return before.shakes(); });
+  if (!results_) return;
   results_->progress.stage(stage.name,
                            std::none_of(here, scene_.stage.end(), [](const Stage &s) { return s.is_static(); }));
 }

@@ -26,7 +26,9 @@ class Simulation final : public AnySimulation {
   long long remaps() const override { return run_.dynamics.remaps(); }
   long long particles() const override { return run_.world.particle_count; }
   double mass() const override { return run_.world.total_mass; }
-  double critical_step() override { return run_.dynamics.critical_step(); }
+  double critical_step(const std::array<double, 2> &damping_frequencies) override {
+    return run_.dynamics.critical_step(damping_frequencies);
+  }
   std::string step_bound() const override { return run_.dynamics.step_bound().sentence(); }
   MeshReport mesh_report() const override {
     MeshReport report = run_.world.mesh.report();

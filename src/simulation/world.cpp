@@ -11,6 +11,7 @@
 #include "base/sum.h"
 #include "scene/body_source.h"
 #include "scene/mesh_source.h"
+#include "scene/rayleigh.h"
 #include "scene/scene.h"
 #include "scene/stage.h"
 #include "solvers/quasi_static/pore_flow.h"
@@ -72,6 +73,7 @@ void World<dim>::set_loading(const Stage &stage, double stage_time, const Clock 
   motion->loading.time_rate = stage.hold_loads ? 0 : 1;
   motion->loading.time = clock.load_time;
   motion->loading.damping = stage.damping();
+  motion->loading.damping_frequencies = stage.damping_frequencies();
   motion->loading.shaking = stage.shakes() ? &shaking : nullptr;
   motion->loading.shaken_since = clock.time - stage_time;
   motion->loading.in_frame_of_base =
@@ -81,11 +83,11 @@ void World<dim>::set_loading(const Stage &stage, double stage_time, const Clock 
   motion->loading.pore_flow = stage.pore_flow;
 }
 
-/// Changes between dashpots and the supports that stand in for them; what these bore stays on as a dead load.
+/// Changes between boundaries and the supports that stand in for them; what these bore stays on as a dead load.
 template <int dim>
 PetscErrorCode World<dim>::fix_dashpots(bool fixed, double time) {
   PetscFunctionBeginUser;
-  if (fixed == conditions.uses_stand_ins() || !conditions.has_dashpots()) PetscFunctionReturn(0);
+  if (fixed == conditions.uses_stand_ins() || !conditions.has_stand_ins()) PetscFunctionReturn(0);
   if (motion->gathered()) PetscCall(release(time));
   if (!fixed) {
     PetscCall(motion->freeze_reactions(time));
@@ -234,15 +236,31 @@ double World<dim>::critical_step_of_cells(double time) {
       const double dilation = field < 0 ? 0 : points.history[q * memory + field];
       return dilation > 0 ? std::exp(-dilation / 2) : 1;
     };
+    const Rayleigh damping = rayleigh(scene.body[b].damping_ratio, motion->loading.damping_frequencies);
     int last = -1;
-    double of_cell = 0;  // of soil as dense as it was
+    double of_cell = 0, of_skeleton = 0;  // of soil as dense as it was
     for (int q = 0; q < points.count; ++q) {
-      if (points.cell[q] != last) of_cell = critical_[b](motion->grid().mesh_cell[last = points.cell[q]]);
-      local = std::min(local, of_cell * share_of_step(q));
+      if (points.cell[q] != last) {
+        const int cell = motion->grid().mesh_cell[last = points.cell[q]];
+        of_cell = critical_[b](cell), of_skeleton = critical_[b].skeleton(cell);
+      }
+      const double share = share_of_step(q), omega = 2 / (of_skeleton * share);
+      const double rate = damping.mass + damping.stiffness * omega * omega;
+      local = std::min(local, rate > 0 ? with_explicit_drag(of_cell * share, rate) : of_cell * share);
     }
   }
   MPI_Allreduce(&local, &step, 1, MPI_DOUBLE, MPI_MIN, comm);
   return step;
+}
+
+template <int dim>
+double World<dim>::damping_rate(double omega) const {
+  double rate = 0;
+  for (const BodySource &body : scene.body) {
+    const Rayleigh damping = rayleigh(body.damping_ratio, motion->loading.damping_frequencies);
+    rate = std::max(rate, damping.mass + damping.stiffness * omega * omega);
+  }
+  return rate;
 }
 
 template <int dim>
@@ -349,6 +367,7 @@ std::vector<Vec<dim>> World<dim>::nodal_displacement() {
     }
   }
   require(mesh.halo.sum(u.empty() ? nullptr : u[0].data(), dim));
+  require(mesh.ties.sum(u.empty() ? nullptr : u[0].data(), dim));
   const FilledGrid<dim> &grid = motion->grid();
   for (int i = 0; i < grid.node_count(); ++i)
     for (int d = 0; d < dim; ++d) {

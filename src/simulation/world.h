@@ -67,8 +67,11 @@ class World {
   /// Displacements, velocities and plastic strain are zero from now on.
   void reset_displacement(double time);
 
-  /// The least over the filled cells, by the elastic waves in each cell alone [s]. Collective.
+  /// The least over the filled cells, by the elastic waves in each cell alone and the Rayleigh damping that acts [s].
+  /// Collective.
   double critical_step_of_cells(double time);
+  /// By which the Rayleigh damping that acts slows motion of an angular frequency [1/s], at most [1/s].
+  double damping_rate(double omega) const;
   /// One report per body. Collective.
   std::vector<BodyReport> report();
   /// Faces of the bodies that are there at the start beyond which there is no soil, of all ranks. Collective.
@@ -119,7 +122,8 @@ class World {
   void read_laws();
   void find_strengths();
   std::vector<Source> read_sources();
-  void read_mesh(DM plex, const std::string &mesh_file, const Cuts &cuts);
+  void read_mesh(DM plex, const std::string &mesh_file, const Cuts &cuts, const std::vector<Source> &sources);
+  void tie_sides(const std::vector<Source> &sources, bool complains);
   void find_mesh_box();
   void check_bodies() const;                                        // world_checks.cpp
   void check_boundaries(const std::vector<Source> &) const;         // world_checks.cpp
@@ -127,6 +131,7 @@ class World {
   void check_fresh_base(const std::string &path) const;             // world_checks.cpp
   void check_something_acts(const std::vector<Source> &) const;     // world_checks.cpp
   void check_earthquake() const;                                    // world_checks.cpp
+  void check_sides(const std::vector<Source> &) const;              // world_checks.cpp
   void check_boxes() const;                                         // world_checks.cpp
   void check_one_of_two(const std::vector<Source> &) const;         // world_checks.cpp
   void check_seeded(const Body<dim> &, const std::string &) const;  // world_checks.cpp

@@ -50,6 +50,10 @@ void World<dim>::check_bodies() const {
                                         "\"` has none; model the water (`phases = \"drained\"` and a [water] excess "
                                         "below zero), or leave out the "
                                         "keys suction_...");
+    if (body.damping_ratio > 0 && rate_dependent(laws[b]))
+      scene.complain(path + ".damping_ratio",
+                     std::string("must be 0 where law = \"") + law_name(laws[b]) +
+                         "\", whose stress depends on the rate of strain already: its viscosity takes energy");
     check_lattice(path, particles_per_cell<dim>(body));
     for (size_t k = 0; k < body.dense.size(); ++k)
       check_lattice(path + ".dense." + std::to_string(k), body.dense[k].particles_per_cell);
@@ -64,6 +68,29 @@ void World<dim>::check_earthquake() const {
       scene.complain("stage." + std::to_string(k) + ".duration",
                      "must not be shorter than the motion of the ground, " + rounded(shaking.duration()) +
                          " s; earthquake.begin and end take a part of a record");
+}
+
+/// Sides at which ground goes on stand upright, and free ground at rest knows no pore fluid that moves.
+template <int dim>
+void World<dim>::check_sides(const std::vector<Source> &sources) const {
+  constexpr double upright = 1e-6;  // vertical component of the normal
+  for (const Source &source : sources) {
+    if (source.kind.in_motion != OnSoil::tied && !source.kind.has_column) continue;
+    const std::string path = "boundary." + source.name;
+    if (source.kind.has_column && phases.liquid)
+      scene.complain(path + ".kind", std::string("does not know pore fluids that move (phases = \"") + phases.name +
+                                         "\"): take phases = \"dry\" or \"drained\", or kind = \"tied\" where both "
+                                         "sides have one height");
+    double steepest = 0;
+    for (const std::string &group : source.groups)
+      for (const Facet<dim> &f : mesh.facets(group))
+        steepest = std::max(steepest, std::abs(f.normal[scene.vertical()]));
+    MPI_Allreduce(MPI_IN_PLACE, &steepest, 1, MPI_DOUBLE, MPI_MAX, comm);
+    if (steepest > upright)
+      scene.complain(path + ".group", "must be upright, and one of its facets is inclined by " +
+                                          rounded(std::asin(std::min(1., steepest)) / degree.si) +
+                                          " degrees; let the mesh end in upright planes");
+  }
 }
 
 /// Boxes in which there is nothing.
@@ -240,6 +267,7 @@ void World<dim>::check_boundaries(const std::vector<Source> &sources) const {
     for (const auto &[key, components] : source.kind.vectors)
       if (components != dim) scene.complain(path + "." + key, "must have " + std::to_string(dim) + " components");
   }
+  check_sides(sources);
   check_one_of_two(sources);
   check_one_of_two(seepage_sources);
   check_drains<dim>(mesh, scene);

@@ -81,6 +81,7 @@ void World<dim>::divide(const Cuts &cuts) {
   std::vector<Source> sources = conditions.sources();
   const bool stand_ins = conditions.uses_stand_ins();
   mesh = mesh.divided(cuts), comm = mesh.comm();
+  tie_sides(sources, false);
   conditions = Conditions<dim>();
   require(conditions.setup(mesh, std::move(sources)));
   conditions.use_stand_ins(stand_ins), conditions.bases().remember_slip(loading.softening);

@@ -5,6 +5,7 @@
 
 #include "base/freed_memory.h"
 #include "base/sum.h"
+#include "meshes/side_columns.h"
 #include "scene/body_source.h"
 #include "scene/boundary_source.h"
 #include "scene/mesh_source.h"
@@ -30,11 +31,12 @@ World<dim>::World(MPI_Comm world, const Scene &of, DM plex, const std::string &m
       rates_(*of.transfer) {
   read_laws();
   std::vector<Source> sources = read_sources();
-  read_mesh(plex, mesh_file, cuts);
+  read_mesh(plex, mesh_file, cuts, sources);
   check_bodies();
   find_strengths();
   check_boundaries(sources);
   check_earthquake();
+  tie_sides(sources, true);
   require(conditions.setup(mesh, std::move(sources)));
   check_gap_walls(*this);
   conditions.use_stand_ins(scene.stage.front().hold_loads);
@@ -113,13 +115,21 @@ std::vector<typename World<dim>::Source> World<dim>::read_sources() {
   for (const BoundarySource &b : scene.boundary) {
     const Boundary kind = read_boundary(b.kind);
     const bool seeps = apart && kind.fluids_only() && !kind.needs_gas();
-    (seeps ? seepage_sources : sources).push_back({b.name, b.group, kind});
+    NamedBoundary source{b.name, b.group, kind};
+    if (kind.has_column)
+      for (const std::string &side : b.group) source.columns.push_back(column_of(side));
+    source.groups.insert(source.groups.end(), source.columns.begin(), source.columns.end());
+    (seeps ? seepage_sources : sources).push_back(std::move(source));
   }
   return sources;
 }
 
 template <int dim>
-void World<dim>::read_mesh(DM plex, const std::string &mesh_file, const Cuts &cuts) {
+void World<dim>::read_mesh(DM plex, const std::string &mesh_file, const Cuts &cuts,
+                           const std::vector<Source> &sources) {
+  std::vector<std::string> sides;
+  for (const Source &source : sources)
+    for (std::size_t k = 0; k < source.columns.size(); ++k) sides.push_back(source.groups[k]);
   std::vector<std::pair<std::string, double>> weights;
   SeedCounts seeds{{}, id_stride()};
   for (const BodySource &body : scene.body)
@@ -132,7 +142,7 @@ void World<dim>::read_mesh(DM plex, const std::string &mesh_file, const Cuts &cu
     mesh = BackgroundMesh<dim>::adopt(plex);
   else
     try {
-      mesh = BackgroundMesh<dim>::read(comm, mesh_file, weights, cuts, scene.mesh->halvings, seeds);
+      mesh = BackgroundMesh<dim>::read(comm, mesh_file, weights, cuts, scene.mesh->halvings, seeds, sides);
     } catch (const std::invalid_argument &error) {
       scene.complain(!scene.mesh->file.empty()      ? "mesh.file"
                      : !scene.mesh->section.empty() ? "mesh.section"
@@ -141,6 +151,14 @@ void World<dim>::read_mesh(DM plex, const std::string &mesh_file, const Cuts &cu
     }
   comm = mesh.comm();
   find_mesh_box();
+}
+
+/// Joins the nodes of sides that move alike. Collective.
+template <int dim>
+void World<dim>::tie_sides(const std::vector<Source> &sources, bool complains) {
+  const Ties ties = find_ties<dim>(mesh, sources);
+  if (complains && !ties.fault.empty()) scene.complain("boundary." + sources[ties.source].name + ".group", ties.fault);
+  mesh.tie(ties.groups);
 }
 
 /// Grids of the scene are told of it.
@@ -373,6 +391,8 @@ template int World<2>::id_stride() const;
 template int World<3>::id_stride() const;
 template void World<2>::settle_bodies();
 template void World<3>::settle_bodies();
+template void World<2>::tie_sides(const std::vector<Source> &, bool);
+template void World<3>::tie_sides(const std::vector<Source> &, bool);
 template void World<2>::close_bases();
 template void World<3>::close_bases();
 template void World<2>::make_motion();

@@ -18,7 +18,7 @@ double element_size<3>(double volume) {
 }
 
 template <int dim>
-FilledGrid<dim>::FilledGrid(const BackgroundMesh<dim> &mesh) : mesh_(&mesh), halo_(mesh.halo) {
+FilledGrid<dim>::FilledGrid(const BackgroundMesh<dim> &mesh) : mesh_(&mesh), halo_(mesh.halo), ties_(mesh.ties) {
   const int nodes = mesh.node_count(), cells = mesh.cell_count();
   make_room(compact_node_, nodes), make_room(compact_cell_, cells);
   make_room(mesh_node, nodes), make_room(mass, nodes), make_room(position, nodes);
@@ -49,6 +49,15 @@ void FilledGrid<dim>::complete() {
     for (int node : halo_.shared_nodes())
       if (staging_[node] > 0) enter_node(node);
   }
+  if (!ties_.empty()) {
+    staging_.resize(std::max(staging_.size(), compact_node_.size()));
+    for (const int node : ties_.nodes()) staging_[node] = find_node(node) >= 0;
+    ties_.find_places([](int node) { return node; });
+    (void)ties_.sum(staging_.data(), 1);
+    for (const int node : ties_.nodes())
+      if (staging_[node] > 0) enter_node(node);
+    find_ties();
+  }
   for (int i = 0; i < node_count_; ++i) mass[i] = 0, position[i] = mesh_->position[mesh_node[i]];
   for (int c = 0; c < cell_count_; ++c) {
     const int cell = mesh_cell[c];
@@ -59,14 +68,16 @@ void FilledGrid<dim>::complete() {
 template <int dim>
 PetscErrorCode FilledGrid<dim>::sum(double *values, int width) {
   PetscFunctionBeginUser;
-  if (halo_.empty()) PetscFunctionReturn(0);
-  staging_.resize(std::max(staging_.size(), compact_node_.size() * width));  // once for the widest sum
-  for (int node : halo_.shared_nodes())
-    for (int k = 0; k < width; ++k)
-      staging_[node * width + k] = find_node(node) < 0 ? 0 : values[find_node(node) * width + k];
-  PetscCall(halo_.sum(staging_.data(), width));
-  for (int node : halo_.shared_nodes())
-    if (find_node(node) >= 0) std::copy_n(&staging_[node * width], width, &values[find_node(node) * width]);
+  if (!halo_.empty()) {
+    staging_.resize(std::max(staging_.size(), compact_node_.size() * width));  // once for the widest sum
+    for (int node : halo_.shared_nodes())
+      for (int k = 0; k < width; ++k)
+        staging_[node * width + k] = find_node(node) < 0 ? 0 : values[find_node(node) * width + k];
+    PetscCall(halo_.sum(staging_.data(), width));
+    for (int node : halo_.shared_nodes())
+      if (find_node(node) >= 0) std::copy_n(&staging_[node * width], width, &values[find_node(node) * width]);
+  }
+  PetscCall(ties_.sum(values, width));
   PetscFunctionReturn(0);
 }
 
@@ -82,6 +93,7 @@ typename FilledGrid<dim>::Rows FilledGrid<dim>::serialize(Archive &archive) {
     clear();
     const LocalNumbers node_of(mesh.global_node), cell_of(mesh.global_cell);
     for (const long long number : nodes) enter_node(node_of(number));
+    find_ties();
     for (const long long number : cells) {
       const int cell = cell_of(number);
       mesh_cell[cell_count_] = cell, compact_cell_[cell] = ++cell_count_;

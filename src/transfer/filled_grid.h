@@ -49,7 +49,8 @@ class FilledGrid {
   /// Once all cells are entered: enters nodes that only other ranks have filled, and places cells and nodes as they are
   /// in the mesh; collective.
   void complete();
-  /// Adds up `width` doubles per compact node over the ranks that share the node; collective.
+  /// Adds up `width` doubles per compact node over the ranks that share the node, and over nodes that are tied;
+  /// collective.
   PetscErrorCode sum(double *values, int width);
   /// Rows of a checkpoint for the filled nodes and cells, by compact number.
   struct Rows {
@@ -76,6 +77,9 @@ class FilledGrid {
 
  private:
   double element_size_of(int mesh_cell);
+  void find_ties() {
+    ties_.find_places([this](int node) { return find_node(node); });
+  }
   int enter_node(int node) {
     if (compact_node_[node] == 0) mesh_node[node_count_] = node, compact_node_[node] = ++node_count_;
     return find_node(node);
@@ -87,6 +91,7 @@ class FilledGrid {
   std::vector<double> element_size_;              ///< of mesh cells that were filled before, otherwise 0 [m]
   std::vector<double> staging_;
   Halo halo_;
+  LinkedNodes ties_;
 };
 
 /// Gradients 1..dim and volume of a simplex from its edges, which lead from vertex 0 to the others; the volume is

@@ -8,6 +8,7 @@
 #include "tests/verification/celia/exact.h"
 #include "tests/verification/closed_box/exact.h"
 #include "tests/verification/curved_chute/exact.h"
+#include "tests/verification/damped_layer/exact.h"
 #include "tests/verification/dynamic_oedometer/exact.h"
 #include "tests/verification/elastic_bar/exact.h"
 #include "tests/verification/fem_at_rest/exact.h"
@@ -26,6 +27,7 @@
 #include "tests/verification/gravity_column/exact.h"
 #include "tests/verification/green_ampt/exact.h"
 #include "tests/verification/hydrostatic/exact.h"
+#include "tests/verification/hysteretic_column/exact.h"
 #include "tests/verification/incline_block/exact.h"
 #include "tests/verification/incoming_wave/exact.h"
 #include "tests/verification/k0_column/exact.h"
@@ -39,6 +41,7 @@
 #include "tests/verification/rigid_rotation/exact.h"
 #include "tests/verification/rigid_translation/exact.h"
 #include "tests/verification/shaken_block/exact.h"
+#include "tests/verification/site_response/exact.h"
 #include "tests/verification/spinning_block/exact.h"
 #include "tests/verification/srivastava_yeh/exact.h"
 #include "tests/verification/submerged_slope/exact.h"
@@ -76,9 +79,14 @@ inline constexpr LadderEntry ladder[] = {
      rungs::wet_incline},
     {"loaded_face", "verification", "loads on faces that move through several cells", rungs::loaded_face},
     {"leaving_waves", "verification", "pulses that leave through non-reflecting faces", rungs::leaving_waves},
+    {"damped_layer", "verification", "transfer function of a layer with Rayleigh damping, on rigid and elastic base",
+     rungs::damped_layer},
+    {"hysteretic_column", "verification", "response spectrum of a column of hysteretic soil under a record",
+     rungs::hysteretic_column},
     {"incoming_wave", "verification", "wave that comes in through dashpots, from the same and from harder rock",
      rungs::incoming_wave},
     {"shaken_block", "verification", "block on a shaken plane beside Newmark's sliding block", rungs::shaken_block},
+    {"site_response", "verification", "layer on a half-space between tied and free-field sides", rungs::site_response},
     {"water_table", "verification", "column below open water, and below a water table that falls", rungs::water_table},
     {"rigid_translation", "verification", "block in free flight: no stress, momentum to round-off",
      rungs::rigid_translation},

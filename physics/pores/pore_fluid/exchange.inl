@@ -123,7 +123,7 @@ PetscErrorCode PoreFluid<dim, Phases>::find_divergence(const Frame &frame, const
       for (int d = 0; d < dim; ++d)
         out += flux_[a][i][d] * nodes_[i].geometry[d], gap_flux += flux_[a][i][d] * gap_[i][d];
       gap_flux_[a][i] = gap_flux;
-      if (!frame.trial && mesh_.owned[grid.mesh_node[i]]) out_[a] += out - gap_flux * nodes_[i].volume();
+      if (!frame.trial && mesh_.counted[grid.mesh_node[i]]) out_[a] += out - gap_flux * nodes_[i].volume();
     }
   for (int c = 0; c < cells; ++c) {
     const Shape<dim> &shape = grid.shape[c];

@@ -12,6 +12,8 @@ from talus_units import at_time, capital, clock, readable_unit, with_unit, words
 
 # coordinates, stress and state of points: sections and stress paths show them better; the clock of the loads says nothing as a curve
 ELSEWHERE = ("load_time", "x", "y", "z", "mean_pressure", "deviator", "mobilised_friction", "state")
+GROUND = "ground_acceleration"  # its velocity and displacement are columns of history.csv, and no pictures
+BESIDE_GROUND = ("displacement", "velocity")  # drawn below the acceleration of the ground
 OF_ALL_SOIL = ("J", "W", "N", "kg", "kg m/s")
 
 
@@ -28,7 +30,7 @@ def draw_histories(results, folder):
         history = since if quantity in RESET else whole  # what is set to 0 begins there, so that the settlement before does not set the scale
         lines = {", ".join(same.get(name, [name])): values for name, values in history.groups()[quantity, unit].items() if name not in others}
         lines = {name: values for name, values in lines.items() if np.isfinite(values).any()}  # others are points that have had no soil
-        if quantity in ELSEWHERE or quantity.startswith("stress_") or quantity.endswith(("_x", "_y", "_z")) or not any(changes(values) for values in lines.values()):
+        if quantity in ELSEWHERE or quantity.startswith(("stress_", "ground_")) or quantity.endswith(("_x", "_y", "_z")) or not any(changes(values) for values in lines.values()):
             continue
         if quantity == "energy":
             if "potential" in lines:
@@ -42,8 +44,14 @@ def draw_histories(results, folder):
         else:
             path = folder / f"history_{quantity}.png"
             pictures.append((quantity, draw_curves(history, quantity, unit, lines, results.title, results.per_metre(""), path, base_friction(results.scene, quantity),
-                                                  reset[1] if reset and history.time[0] > reset[0] else "")))
+                                                  reset[1] if reset and history.time[0] > reset[0] else "", ground_of(history) if quantity in BESIDE_GROUND else {})))
     return pictures
+
+
+def ground_of(history):
+    """The components of the acceleration of the ground that vary [m/s2]."""
+    of_ground = [lines for (quantity, _), lines in history.groups().items() if quantity == GROUND]
+    return {axis: values for lines in of_ground for axis, values in lines.items() if changes(values)}
 
 
 def changes(values):
@@ -63,16 +71,20 @@ def base_friction(scene, quantity):
         return None
 
 
-def draw_curves(history, quantity, unit, lines, title, per, path, tan_phi=None, reset=""):
-    """`reset` is the stage at whose end the quantity was last set to 0."""
-    figure, axes = plt.subplots(figsize=(7.6, 3.7))
+def draw_curves(history, quantity, unit, lines, title, per, path, tan_phi=None, reset="", ground=None):
+    """`reset` is the stage at whose end the quantity was last set to 0, `ground` the acceleration of the ground [m/s2], which is drawn above."""
+    if ground:
+        figure, (above, axes) = plt.subplots(2, 1, sharex=True, figsize=(7.6, 5.1), gridspec_kw={"height_ratios": [1, 2.2]})
+        plot_lines(above, history, ground, "m/s²", "ground", per, style.INK if len(ground) == 1 else None)
+    else:
+        figure, axes = plt.subplots(figsize=(7.6, 3.7))
     plot_lines(axes, history, lines, unit, words(quantity), per)
     if tan_phi is not None:
         axes.axhline(tan_phi, color=style.SOFT, lw=0.9, ls=(0, (4, 2)), zorder=1)
         axes.annotate(f"tan φ = {tan_phi:.3g}", (1.01, tan_phi), xycoords=("axes fraction", "data"), fontsize=8, color=style.SOFT, va="center")
     if reset:
         figure.text(0.985, 0.1 / figure.get_figheight(), f"since the end of stage {reset}", fontsize=7.5, color=style.SOFT, ha="right")
-    return finish(figure, [axes], history, capital(words(quantity)), title, path)
+    return finish(figure, [above, axes] if ground else [axes], history, capital(words(quantity)), title, path)
 
 
 def draw_energy(history, lines, title, per, path):

@@ -20,7 +20,8 @@ PARAMETERS = {"unit_weight": "γ", "saturated_unit_weight": "γₛₐₜ", "dens
 NO_PARAMETERS = {"region", "law", "material", "particles_per_cell", "dense", "velocity", "displacement", "stress", "body_acceleration", "water_table"}
 # what a boundary does to the soil: words, colour, symbol in perspective
 ON_SOIL = {"fixed": ("fixed", EARTH, "s"), "roller": ("roller", EARTH, "o"), "base": ("base with friction", BASE, "X"),
-           "load": ("load", LOAD, "v"), "velocity": ("moving plate", PLATE, "D"), "dashpot": ("non-reflecting", GAS, "P")}
+           "load": ("load", LOAD, "v"), "velocity": ("moving plate", PLATE, "D"), "dashpot": ("non-reflecting", GAS, "P"),
+           "tied": ("tied", EARTH, "o")}
 ON_WATER = {"wall": "no flow", "pressure": "pore pressure", "seepage": "water level, above it a seepage face", "flux": "inflow", "outflow": "outflow"}
 
 

@@ -67,7 +67,7 @@ class Symbols:
         elif boundary.soil in ("fixed", "base"):
             self.axes.plot(*points.T, color=boundary.colour, lw=1.6, **under)
             self.hatch(points, normals, boundary.colour)
-        elif boundary.soil == "roller":
+        elif boundary.soil in ("roller", "tied"):
             self.axes.plot(*points.T, color=boundary.colour, lw=1.0, **under)
             at, n, _ = along(points, normals, 1.9 * self.size)
             for centre in at + 0.42 * self.size * n:

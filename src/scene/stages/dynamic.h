@@ -12,9 +12,10 @@ struct DynamicKeys : SeismicKeys {
   static constexpr StageTraits traits{};
 
   StopKinds until;
-  double damping = 0;       ///< local (Cundall) damping factor alpha [-]
-  double gravity_ramp = 0;  ///< gravity and pore pressure grow linearly over this time [s]
-  bool earthquake = false;  ///< the ground moves as [[earthquake]] says, from the begin of the stage
+  double damping = 0;                       ///< local (Cundall) damping factor alpha [-]
+  std::vector<double> damping_frequencies;  ///< of Rayleigh damping, lower and upper [Hz]; empty: none
+  double gravity_ramp = 0;                  ///< gravity and pore pressure grow linearly over this time [s]
+  bool earthquake = false;                  ///< the ground moves as [[earthquake]] says, from the begin of the stage
 
   StopTraits stop() const {
     return std::visit([](const auto &kind) { return kind.traits; }, until);
@@ -29,6 +30,10 @@ struct DynamicKeys : SeismicKeys {
     v.number("damping", damping, one, Range{0, 0.99, settles() ? Usual{0, 0.8} : Usual{0, 0.1}},
              "local (Cundall) damping factor; soil that slides is slowed by it, soil that settles (until = "
              "\"equilibrium\" or a gravity_ramp) comes to rest fastest with 0.7");
+    v.point("damping_frequencies", damping_frequencies, hertz,
+            "Rayleigh damping: the two frequencies at which soil has the damping_ratio of its body, such as [1, 8]: "
+            "the lowest of the ground and a higher one that the motion still has; between them the ratio is less, "
+            "beyond them more. Shortens the step");
     SeismicKeys::fields(v);
     v.flag("earthquake", earthquake,
            "the ground moves as [[earthquake]] says, from the begin of the stage on: as a wave where a boundary has "

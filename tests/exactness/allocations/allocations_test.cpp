@@ -74,6 +74,16 @@ TEST(Allocations, none_between_remaps_of_a_collapsing_column) {
   EXPECT_EQ(c.in_steps, 0);
 }
 
+TEST(Allocations, none_between_remaps_of_a_damped_column) {
+  for (const char *integrator : {"integrator.kind=euler", "integrator.kind=arkode"}) {
+    const Count c = count(
+        column, {"mesh.size=0.01", "body.bars.damping_ratio=0.05", "stage.0.damping_frequencies=[5, 20]", integrator},
+        400, 100);
+    EXPECT_GT(c.steps, 50);
+    EXPECT_EQ(c.in_steps, 0) << integrator;
+  }
+}
+
 TEST(Allocations, none_during_remaps_of_a_collapsing_column) {
   const Count c = count(column, {"mesh.size=0.01", "transfer.remap_interval=0"}, 2000, 100);
   EXPECT_EQ(c.remaps, 100);

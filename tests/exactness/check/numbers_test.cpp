@@ -51,6 +51,27 @@ TEST(Check, TakesAPlaneSceneAsASliceBetweenRollers) {
   EXPECT_EQ(number(flag, "mass_kg"), number(overrides, "mass_kg"));
 }
 
+/// docs/theory/earthquakes.md (9.4): the step of a stage is that of its fastest cell under Rayleigh damping, and a run
+/// takes it. A fixed step has to be below that.
+TEST(Check, SaysWhatDampingDoesToTheStep) {
+  const Folder folder;
+  const std::vector<std::string> damping{"body.sand.damping_ratio=0.05", "stage.0.damping_frequencies=[2, 8]"};
+  const Ending damped = check(folder, damping), free = check(folder, {});
+  ASSERT_EQ(damped.status, 0) << damped.output;
+  const double critical = number(damped, "critical_step_s"), omega = 2 / critical, two_pi = 2 * M_PI;
+  const double alpha = 2 * 0.05 * two_pi * 2 * 8 / 10, beta = 2 * 0.05 / (two_pi * 10);
+  const double ratio = (alpha + beta * omega * omega) / (2 * omega);
+  EXPECT_EQ(critical, number(free, "critical_step_s"));
+  EXPECT_EQ(number(free, "damped_critical_step_s"), 0);
+  const double stable = number(damped, "damped_critical_step_s");
+  EXPECT_NEAR(stable / critical, std::sqrt(1 + ratio * ratio) - ratio, 1e-6);
+  const Ending page = talus(folder, {"check", "scene.toml", "--set", damping[0], "--set", damping[1]});
+  EXPECT_TRUE(page.says("by Rayleigh damping at 2 and 8 Hz")) << page.output;
+  std::vector<std::string> fixed = damping;
+  fixed.push_back("integrator.step=" + std::to_string(1.01 * stable));
+  EXPECT_TRUE(check(folder, fixed).says("less for Rayleigh damping"));
+}
+
 TEST(Check, SaysWhatTheCriticalStepIsTakenFromAndWhy) {
   const Folder folder;
   const std::vector<std::string> in_3d{"dimension=3", "mesh.thickness=0.5", "mesh.layers=2",

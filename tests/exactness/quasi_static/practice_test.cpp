@@ -64,6 +64,60 @@ step = 1e-3
   EXPECT_NEAR(solved.history.column("mass_kg").back(), 2000 * 0.25, 1e-9);
 }
 
+/// history.csv has the motion of the ground beside that of soil in flight, which it moves in the frame of the base: the
+/// sum of both is at rest. The ground stays where a stage has left it, and a second one moves it on.
+TEST(Practice, history_has_the_motion_of_the_ground) {
+  const std::string text = R"(
+gravity = 0
+[mesh]
+section = "flight.csv"
+size = 0.25
+[body.soil]
+region = "block"
+density = 2000
+law = "linear_elastic"
+young_modulus = "1 MPa"
+poisson_ratio = 0.3
+[output]
+history_interval = 0.02
+point.middle.position = [0.75, 0.75]
+[[earthquake]]
+kind = "sine"
+amplitude = 4
+frequency = 5
+duration = 0.2
+[[stage]]
+duration = 0.2
+earthquake = true
+[[stage]]
+duration = 0.1
+reset_displacement = true
+[[stage]]
+duration = 0.2
+earthquake = true
+[integrator]
+step = 1e-4
+)";
+  const Solved solved = solve(text);
+  const std::vector<double> t = solved.history.column("time_s"), u = solved.history.column("middle_displacement_x_m"),
+                            a = solved.history.column("ground_acceleration_x_m_s2"),
+                            v = solved.history.column("ground_velocity_x_m_s"),
+                            x = solved.history.column("ground_displacement_x_m");
+  const double left = 4 * 0.2 / (10 * M_PI);  // a sine over its period: A T / w
+  for (size_t k = 0; k < t.size(); ++k) {
+    if (t[k] < 0.2 - 1e-9) {
+      EXPECT_NEAR(a[k], 4 * std::sin(10 * M_PI * t[k]), 0.02) << "between values of the motion, at " << t[k];
+      EXPECT_NEAR(x[k], -u[k], 1e-4 * left) << "at " << t[k];
+    } else if (t[k] > 0.2 + 1e-9 && t[k] < 0.3 - 1e-9) {
+      EXPECT_EQ(a[k], 0);
+      EXPECT_EQ(v[k], 0);
+      EXPECT_NEAR(x[k], left, 1e-3 * left);
+    }
+  }
+  EXPECT_NEAR(x.back(), 2 * left, 2e-3 * left);
+  EXPECT_EQ(solved.history.column("ground_displacement_y_m").back(), 0);
+}
+
 /// Unit weights above and below a water table give the weight of each part; so does a density, the same on both sides.
 TEST(Practice, unit_weights_give_the_weight_above_and_below_the_water_table) {
   const std::string stage = "[[stage]]\nkind = \"quasi_static\"\nduration = 1\n";

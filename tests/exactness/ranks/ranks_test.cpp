@@ -130,6 +130,13 @@ TEST(Ranks, slope_whose_strength_varies_with_place_is_the_same) {
   expect_the_same(slope, {"body.weathered.cohesion=1e3 + 100 * x", "body.weathered.friction_angle=24 - 0.2 * y",
                           "body.weathered.residual_cohesion=0", "body.unweathered.cohesion=5e3 + 300 * (14 - y)"});
 }
+TEST(Ranks, slope_whose_soils_are_damped_differently_is_the_same) {
+  expect_the_same(slope, {"body.weathered.damping_ratio=0.1", "body.unweathered.damping_ratio=0.03",
+                          "stage.0.damping_frequencies=[1, 8]"});
+}
+TEST(Ranks, slope_of_hysteretic_soil_is_the_same) {
+  expect_the_same(slope, {"body.weathered.law=hysteretic_mohr_coulomb", "body.weathered.reference_strain=1e-3"});
+}
 TEST(Ranks, column_collapse_is_the_same_with_particle_stress) {
   expect_the_same(column, {"mesh.size=0.01", "transfer.average_stress=false", "transfer.locking=nodal"});
 }

@@ -49,7 +49,8 @@ const std::vector<std::string> heated_base{
     "boundary.base.heat_capacity=1e6"};
 
 const std::vector<std::string> shaken{
-    "earthquake=[{kind='kanai_tajimi', amplitude=5, duration=10, rise=0.01, strong=9}]", "stage.fall.earthquake=true"};
+    "earthquake=[{kind='kanai_tajimi', amplitude=5, duration=10, rise=0.01, strong=9}]", "stage.fall.earthquake=true",
+    "body.sand.damping_ratio=0.05", "stage.fall.damping_frequencies=[5, 20]"};
 
 const Variant variants[] = {
     {"dry", {}},
@@ -97,6 +98,27 @@ const Variant variants[] = {
      [] {
        std::vector<std::string> set = shaken;
        set.insert(set.end(), {"boundary.left.kind=non_reflecting", "boundary.left.incoming_wave=true"});
+       return set;
+     }()},
+    {"between_tied_sides_on_two_ranks",
+     [] {
+       std::vector<std::string> set = shaken;
+       set.insert(set.end(), {"boundary.left.kind=tied", "boundary.left.group=['left', 'right']"});
+       return set;
+     }(),
+     2, SIGKILL},
+    {"beside_free_ground_balanced_at_every_remap_on_two_ranks",
+     [] {
+       std::vector<std::string> set = shaken;
+       set.insert(set.end(), {"boundary.left.kind=free_field", "mesh.balance_ranks=always"});
+       return set;
+     }(),
+     2, SIGKILL},
+    {"with_hysteretic_soil", {"body.sand.law=hysteretic_mohr_coulomb", "body.sand.reference_strain=1e-3"}},
+    {"with_damping_by_arkode",
+     [] {
+       std::vector<std::string> set = shaken;
+       set.push_back("integrator.kind=arkode");
        return set;
      }()},
     {"with_a_fixed_step", {"integrator.step=2e-4"}},

@@ -3,8 +3,10 @@
 
 #include <numbers>
 
+#include "earthquake/ground_path.h"
 #include "earthquake/intensity.h"
 #include "earthquake/processing.h"
+#include "earthquake/shaking.h"
 #include "earthquake/sources.h"
 
 namespace talus {
@@ -32,6 +34,23 @@ TEST(GroundMotion, OfConstantAccelerationGainsSpeedAndWay) {
   const GroundMotion motion{0.1, std::vector<double>(11, 2.)};
   EXPECT_NEAR(motion.velocity().back(), 2, 1e-14);
   EXPECT_NEAR(motion.displacement().back(), 1, 1e-14);
+}
+
+/// A scene's motion between its values, and after its end.
+TEST(GroundShaking, IsTheIntegralOfItsAcceleration) {
+  const GroundShaking shaking(read_components(
+      "earthquake = [{kind = 'sine', amplitude = 2, frequency = 1, duration = 1.3, direction = [3, 4]}]"));
+  const GroundPath path(shaking);
+  constexpr double w = 2 * pi, dt = 1e-6;
+  for (const double t : {0.3137, 0.9, 1.2999}) {
+    const double exact = 2 * (t / w - std::sin(w * t) / (w * w));
+    EXPECT_NEAR(path.displacement(t)[0], 0.6 * exact, 1e-3 * exact) << "at " << t;
+    EXPECT_NEAR(path.displacement(t)[1], 0.8 * exact, 1e-3 * exact) << "at " << t;
+    const double rate = (path.displacement(t + dt)[0] - path.displacement(t - dt)[0]) / (2 * dt);
+    EXPECT_NEAR(rate, shaking.velocity(t)[0], 1e-6) << "at " << t;
+  }
+  EXPECT_EQ(path.displacement(-1)[0], 0);
+  EXPECT_EQ(path.displacement(5), path.displacement(1.3));
 }
 
 TEST(Baseline, OfAVelocityThatIsAPolynomialIsTakenOutWhole) {

@@ -5,6 +5,8 @@
 
 #include <numbers>
 
+#include "earthquake/column_response.h"
+
 namespace talus {
 namespace {
 
@@ -18,6 +20,30 @@ TEST(SlidingBlock, UnderARectangularPulseIsNewmarks) {
     EXPECT_NEAR(sliding_block(motion, N).back(), exact, 1e-3 * exact) << N;
   }
   EXPECT_EQ(sliding_block(motion, 3.01).back(), 0);
+}
+
+/// A record that ends while the block slides: it goes on until it is at rest, and no further.
+TEST(SlidingBlock, GoesOnAfterTheRecord) {
+  constexpr double step = 0.01, A = 3, T = 0.5, N = 1;
+  const GroundMotion motion{step, std::vector<double>(51, A)};
+  const double exact = (A - N) * A * T * T / (2 * N);
+  const std::vector<double> way = sliding_block(motion, N), both = sliding_block(motion, N, N);
+  EXPECT_NEAR(way.back(), exact, 1e-12);
+  EXPECT_NEAR(both.back(), exact, 1e-12);
+  EXPECT_EQ(way.size(), 51 + 100u);  // v = (A - N) T = 1 m/s, which N stops in 1 s
+  EXPECT_EQ(sliding_block(motion, A).size(), 51u);
+}
+
+/// The layer vibrates on after the record: it moves a block that the record alone does not.
+TEST(SlidingBlock, FollowsALayerThatVibratesOn) {
+  GroundMotion pulse{0.01, std::vector<double>(101, 0.)};
+  for (int k = 50; k <= 100; ++k) pulse.acceleration[k] = 1;
+  const GroundMotion layer = layer_response(pulse, 1, 0.1);
+  EXPECT_NEAR(layer.duration(), pulse.duration() + 11, 0.01);  // ln 1000 / (2 pi 0.1) periods
+  EXPECT_LT(std::abs(layer.acceleration.back()), 5e-3);
+  double after = 0;
+  for (std::size_t k = 101; k < layer.acceleration.size(); ++k) after = std::min(after, layer.acceleration[k]);
+  EXPECT_LT(after, -1);
 }
 
 /// On level ground the block slips to both sides, and comes back to where a symmetric motion has taken it from.

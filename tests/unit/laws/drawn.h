@@ -34,6 +34,8 @@ OneLaw drawn(Random &random, int number) {
     if (number % 5 < 2) law.suction_cohesion = 20e3, law.suction_cohesion_rate = 1e-5;
     if (number % 5 == 1) law.suction_friction_rate = 1e-4 * degree.si;
   }
+  if constexpr (requires { law.reference_strain; })
+    law.reference_strain = std::pow(10, random.between(-4, -2)), law.curvature = random.between(0.8, 1);
   if constexpr (requires { law.cone; }) law.cone = static_cast<Cone>(random.between(0, 4));
   if constexpr (requires { law.viscosity; }) law.viscosity = std::pow(10, random.between(-3, 5));
   if constexpr (requires { law.yield_stress; })

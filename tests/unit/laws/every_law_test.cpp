@@ -53,9 +53,11 @@ TYPED_TEST(EveryLaw, is_objective) {
     for (int i = 0; i < n; ++i)
       worst = std::max(
           worst, (Q[i] * matrix<dim>(points.stress[i]) * Q[i].transpose() - matrix<dim>(turned.stress[i])).norm());
+    const auto fields = history_fields(law);
     for (std::size_t k = 0; k < points.history.size(); ++k)
-      worst_history =
-          std::max(worst_history, std::abs(points.history[k] - turned.history[k]) / (1 + std::abs(points.history[k])));
+      if (!fields[k % fields.size()].of_tensor)
+        worst_history = std::max(worst_history,
+                                 std::abs(points.history[k] - turned.history[k]) / (1 + std::abs(points.history[k])));
     EXPECT_LT(worst, 1e-10 * scale);
     EXPECT_LT(worst_history, 1e-12);
   });
@@ -80,7 +82,11 @@ TYPED_TEST(EveryLaw, keeps_principal_stresses_under_finite_rotation) {
       worst = std::max(worst,
                        (R[i] * matrix<dim>(still.stress[i]) * R[i].transpose() - matrix<dim>(turned.stress[i])).norm());
     EXPECT_LT(worst, 1e-12 * 1e6);
-    EXPECT_EQ(still.history, turned.history);
+    const auto fields = history_fields(law);
+    for (std::size_t k = 0; k < still.history.size(); ++k)
+      if (!fields[k % fields.size()].of_tensor) {
+        EXPECT_EQ(still.history[k], turned.history[k]);
+      }
   });
 }
 
@@ -122,7 +128,8 @@ TYPED_TEST(EveryLaw, is_the_same_in_plane_strain_and_in_3d) {
     for (int i = 0; i < n; ++i)
       worst = std::max(worst, (matrix<2>(plane.stress[i]) - matrix<3>(solid.stress[i])).norm());
     for (std::size_t k = 0; k < plane.history.size(); ++k)
-      worst_history = std::max(worst_history, std::abs(plane.history[k] - solid.history[k]));
+      worst_history =
+          std::max(worst_history, std::abs(plane.history[k] - solid.history[k]) / (1 + std::abs(plane.history[k])));
     EXPECT_LT(worst, 1e-10 * scale);
     EXPECT_LT(worst_history, 1e-12);
   }

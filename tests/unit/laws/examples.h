@@ -128,6 +128,19 @@ inline std::vector<HenckyDruckerPrager> examples() {
   return large<HenckyDruckerPrager>(examples<DruckerPrager>());
 }
 
+template <>
+inline std::vector<HystereticMohrCoulomb> examples() {
+  std::vector<HystereticMohrCoulomb> laws;
+  for (const MohrCoulomb &one : examples<MohrCoulomb>()) {
+    HystereticMohrCoulomb law{{{one}, {}}};
+    law.reference_strain = 1e-3;
+    laws.push_back(law);
+  }
+  laws[0].curvature = 1;
+  laws[1].reference_strain = 0, laws[1].plasticity_index = 30;
+  return laws;
+}
+
 /// Is its stress linear in strain? Then compliance is a constant, and claims about energy have closed forms. Laws that
 /// keep a volume are not.
 template <class OneLaw>

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "solvers/critical_step.h"
 #include "solvers/integrators.h"
 #include "springs.h"
 
@@ -92,6 +93,25 @@ TEST(Arkode, stability_limit_of_each_order_is_known_within_3_percent) {
     EXPECT_LE(growth(order, 0.97), 1 + 1e-9) << "order " << order;
     EXPECT_GT(growth(order, 1.03), 1.01) << "order " << order;
   }
+}
+
+/// Under damping by the rate of stress the bound of Euler's method is that of the other methods too, over their limits:
+/// in the left half plane their regions of stability hold a half circle through these.
+TEST(Arkode, is_stable_under_damping_by_the_rate_of_stress) {
+  for (int order = 2; order <= 5; ++order)
+    for (const double ratio : {0.05, 0.5, 1., 4., 30.}) {
+      Springs motion(20, 1);
+      for (int i = 0; i < 20; ++i) motion.speed[i] = std::sin(M_PI * 20 * (i + 1) / 21);
+      const double start = motion.energy(), omega = motion.largest_frequency();
+      motion.beta = 2 * ratio / omega;
+      ArkodeSettings settings;
+      settings.order = order, settings.fraction = 1;
+      const double critical = with_explicit_drag(2 / omega, motion.beta * omega * omega);
+      settings.step = 0.97 * settings.rule().limit * critical;
+      Arkode integrator(settings);
+      run_to(integrator, motion, critical, 400 * settings.step);
+      EXPECT_LE(motion.energy() / start, 1 + 1e-9) << "order " << order << ", ratio " << ratio;
+    }
 }
 
 TEST(Arkode, never_passes_the_stability_limit_however_loose_the_tolerance) {

@@ -16,6 +16,7 @@ class Springs : public GivenPlaces {
   Springs(int count, double stiffness) : GivenPlaces(count), stiffness_(stiffness) {}
 
   std::function<double(double)> force = [](double) { return 0.; };  ///< on each mass, of time [N]
+  double beta = 0;  ///< damping by the rate of the forces of the springs, as the stiffness part of Rayleigh's [s]
   int evaluations = 0;
 
   /// Largest of the frequencies 2 sqrt(k) sin(pi n / 2 (count + 1)).
@@ -30,10 +31,10 @@ class Springs : public GivenPlaces {
     return sum + stiffness_ / 2 * before * before;
   }
 
-  PetscErrorCode acceleration(double t, const double *u, const double *, double *a) override {
+  PetscErrorCode acceleration(double t, const double *u, const double *v, double *a) override {
     ++evaluations;
     const int n = size();
-    const auto at = [&](int i) { return i < 0 || i >= n ? 0 : place[i] + (u ? u[i] : 0); };
+    const auto at = [&](int i) { return i < 0 || i >= n ? 0 : place[i] + (u ? u[i] : 0) + beta * v[i]; };
     for (int i = 0; i < n; ++i) a[i] = stiffness_ * (at(i - 1) - 2 * at(i) + at(i + 1)) + force(t);
     return 0;
   }

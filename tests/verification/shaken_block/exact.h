@@ -32,7 +32,7 @@ inline void shaken_block(Rung &rung) {
        {Case{"level, sweep", 0, 20, strong, 4, 2}, Case{"20 deg, sine", 20, 30, sine, 4, 2},
         Case{"20 deg, record", 20, 30, record, 10.5, 2}, Case{"20 deg, sine, 3D", 20, 30, sine, 4, 3}}) {
     const double beta = one.slope * degree, normal = g * std::cos(beta), along = g * std::sin(beta);
-    const std::string down = number(-normal), weight = "\"-2000 * " + number(normal) + " * (0.5 - y)\"";
+    const std::string down = number(-normal), weight = "\"-2000 * " + number(normal) + " * (0.2 - y)\"";
     const bool solid = one.dimension == 3;
     const Run run = rung.run(in_dimension(
         one.dimension,
@@ -46,7 +46,7 @@ inline void shaken_block(Rung &rung) {
     const std::vector<double> exact = sliding_block(motion, normal * tangent - along, normal * tangent + along);
     double most = 0;
     for (const double x : exact) most = std::max(most, std::abs(x));
-    rung.compare(std::string(one.name) + ", way of the block [m]", exact.back(), way(run), 0.05, most);
+    rung.compare(std::string(one.name) + ", way of the block [m]", exact.back(), way(run), 0.01, most);
   }
 }
 
