@@ -323,7 +323,11 @@ int newmark(const NewmarkArguments &arguments) {
   const Scene scene = read_scene(file, arguments.set);
   if (arguments.no_umat) refuse_umat(scene);
   std::vector<std::pair<std::string, GroundMotion>> motions;
-  if (!scene.earthquake.empty()) motions.emplace_back("earthquake", along_x(GroundShaking(scene.earthquake)));
+  if (!scene.earthquake.empty()) {
+    motions.emplace_back("earthquake", along_x(GroundShaking(scene.earthquake)));
+    if (std::ranges::all_of(motions.back().second.acceleration, [](double a) { return a == 0; }))
+      scene.complain("earthquake.0.direction", "must have a component along x: the block slides along it");
+  }
   for (const std::string &record : arguments.records)
     motions.emplace_back(own_name(std::filesystem::path(record).stem().string(), motions),
                          read_motion(record_source(record)));

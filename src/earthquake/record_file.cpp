@@ -245,10 +245,15 @@ GroundMotion read_csv(const Text &text, const std::string &component) {
   }
   std::ranges::nth_element(apart, apart.begin() + static_cast<std::ptrdiff_t>(apart.size() / 2));
   const double usual = apart[apart.size() / 2];
-  constexpr double uneven = 0.5;  // of the step: rounded times are apart by less
-  for (std::size_t k = 1; k < times.size(); ++k)
-    if (std::abs(times[k] - times[k - 1] - usual) > uneven * usual ||
-        std::abs(times[k] - times.front() - static_cast<double>(k) * step) > uneven * step)
+  constexpr double uneven = 0.5;            // of the step: rounded times are apart by less
+  const auto drifts = [&](std::size_t k) {  // unlike `usual`, the mean is no rounded time
+    return std::abs(times[k] - times.front() - static_cast<double>(k) * step) > uneven * step;
+  };
+  const auto gap = [&](std::size_t k) { return std::abs(times[k] - times[k - 1] - usual) > uneven * usual; };
+  std::size_t first = 1;
+  while (first < times.size() && !gap(first)) ++first;
+  for (std::size_t k = first < times.size() ? first : 1; k < times.size(); ++k)
+    if (gap(k) || drifts(k))
       text.complain(line_of[k], "comes " + rounded(times[k] - times[k - 1]) +
                                     " s after the line before, and most come " + rounded(usual) +
                                     " s after: values must be at equal steps, without gaps");

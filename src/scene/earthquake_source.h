@@ -20,7 +20,8 @@ struct EarthquakeSource {
   template <class Visitor>
   void fields(Visitor &&v) {
     v.point("direction", direction, one,
-            "direction of the motion, one component per dimension, of any length; default: along x");
+            "direction of the motion, one component per dimension, two in a slice of a section, of any length; "
+            "default: along x");
     v.number("begin", begin, second, Range{0, 1e5}, "where the part of the record begins that is used");
     v.number("end", end, second, Range{0, 1e5}, "where it ends; 0: with the record");
     v.integer("baseline", baseline, Range{0, 6, {0, 3}},

@@ -69,7 +69,8 @@ class Checks {
     for (std::size_t i = 0; i < scene_.earthquake.size(); ++i) {
       const std::vector<double> &direction = scene_.earthquake[i].direction;
       const std::string path = "earthquake." + std::to_string(i) + ".direction";
-      if (!direction.empty()) components(path, direction.size(), scene_.dimension, "components");
+      const bool of_section = scene_.dimension == 3 && !scene_.mesh->section.empty() && direction.size() == 2;
+      if (!direction.empty() && !of_section) components(path, direction.size(), scene_.dimension, "components");
       if (!direction.empty() && std::ranges::all_of(direction, [](double one) { return one == 0; }))
         reader_.complain(path, "must not be zero");
     }

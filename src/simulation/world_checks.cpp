@@ -81,6 +81,10 @@ void World<dim>::check_sides(const std::vector<Source> &sources) const {
       scene.complain(path + ".kind", std::string("does not know pore fluids that move (phases = \"") + phases.name +
                                          "\"): take phases = \"dry\" or \"drained\", or kind = \"tied\" where both "
                                          "sides have one height");
+    for (std::size_t k = 0; k < scene.stage.size(); ++k)
+      if (scene.stage[k].shakes() && scene.stage[k].hold_loads)
+        scene.complain("stage." + std::to_string(k) + ".hold_loads",
+                       "must be false in an earthquake: " + path + " would be a roller in this stage");
     double steepest = 0;
     for (const std::string &group : source.groups)
       for (const Facet<dim> &f : mesh.facets(group))

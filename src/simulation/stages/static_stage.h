@@ -235,8 +235,10 @@ class StaticStage : public StageRunner<dim> {
       text << "; unbalanced force ratio of the particles that take it over " << sums.ratio();
     if (sums.applied > 0 && sums.ratio() > swings && soil_moves())
       text << ", by which soil at rest swings as soon as it may move: "
-           << (water_flows() ? "" : "quasi_static.elements = \"patches\" or ")
-           << "a dynamic stage with damping after this one lets it rest";
+           << (water_flows() || run_.scene.quasi_static->elements == Elements::patches
+                   ? ""
+                   : "quasi_static.elements = \"patches\" or ")
+           << "a dynamic stage with damping and hold_loads after this one lets it rest";
     run_.recorder.note(text.str(), kind, values);
     run_.progress.met = true;
     if (sets_pressure()) run_.statics.take_seeped_pressure();

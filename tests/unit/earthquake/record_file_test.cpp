@@ -122,6 +122,9 @@ TEST_F(Records, ThatAreBadAreRefused) {
               HasSubstr("line 1: must name the columns of time and acceleration with their units"));
   EXPECT_THAT(refusal("time [s], a [g]\n0,0.1\n0.01,0.1\n0.03,0.1\n0.04,0.2\n"),
               HasSubstr("line 4: comes 0.02 s after"));
+  std::string gap = "time [s], a [g]\n";
+  for (const int k : {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 15, 16, 17, 18}) gap += std::to_string(0.01 * k) + ",0.1\n";
+  EXPECT_THAT(refusal(gap), HasSubstr("line 12: comes 0.06 s after"));
   EXPECT_THAT(refusal("time [s], a [g]\n0,0.1\n0.01,\n"), HasSubstr("line 3: has no number in column 2"));
   EXPECT_THAT(refusal("time [s], a [g]\n0,0.1\n0.01,nan\n"), HasSubstr("line 3: has no number in column 2"));
   EXPECT_THAT(refusal("time [s], a [g]\n0,5\n0.01,50\n"), HasSubstr("a peak of 50 g"));
