@@ -129,7 +129,8 @@ class Study {
       return names;
     }
     names.insert(names.end(), {"fails", "load_time_of_failure_s", "largest_displacement_m", "travel_distance_m",
-                               "volume_of_slide_m3", "depth_of_slide_m"});
+                               "volume_of_slide_m3", "depth_of_slide_m", "run_out_from_toe_m", "fall_height_m",
+                               "angle_of_reach_deg", "area_m2"});
     for (const auto &point : base_.output->point)
       names.insert(names.end(), {point.name + "_displacement_m", point.name + "_largest_speed_m_s"});
     return names;

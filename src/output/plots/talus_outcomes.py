@@ -17,6 +17,7 @@ FAILS, MOVES, STANDS = "fails", "moves", "stands"
 # Of the slope of tests/exactness/results/outcomes.py, in cells of 0.77 m, plastic strain times cell is 0.31 to 0.38 of the displacement in runs that slid by
 # 0.08 to 3.2 m, and 0.10 to 0.13 of it in those that settled by 0.03 and 0.04 m
 SMALL, SLID = 0.1, 0.25
+OF_SLIDE = ("travel_distance_m", "volume_of_slide_m3", "depth_of_slide_m", "run_out_from_toe_m", "fall_height_m", "angle_of_reach_deg", "area_m2", "deepest_at_x_m")
 SHARE = 0.999  # of the soil: single particles count neither for displacement nor for strain
 
 
@@ -54,8 +55,8 @@ def outcome(results, cell=None):
     history = results.history
     for name in history.points(0) if history else {}:
         row[f"{name}_displacement_m"] = finite(history.columns[f"{name}_displacement_m"][-1])  # none where the point has no soil
-    travel, volume, depth, place = slide(results) if state != STANDS else (None, None, None, None)
-    row |= {"travel_distance_m": travel, "volume_of_slide_m3": volume, "depth_of_slide_m": depth, "deepest_at_x_m": place}
+    slid = slide(results) if state != STANDS else None
+    row |= dict(zip(OF_SLIDE, (slid.travel, slid.volume, slid.depth, slid.from_toe, slid.fall, slid.reach(), slid.area, slid.deepest) if slid else (None,) * len(OF_SLIDE)))
     return row | {"steps": int(steps(results)), "particles": int(particles(results)), "cell_m": own}
 
 

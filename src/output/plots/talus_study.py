@@ -35,8 +35,8 @@ OF_SLIDE = ("travel_distance_m", "volume_of_slide_m3", "depth_of_slide_m")  # 0 
 TO_A_CELL = ("travel_distance_m", "depth_of_slide_m")  # rear, front and slip surface are known to a cell
 OF_POINTS = ("_displacement_m", "_largest_speed_m_s")  # endings
 MOST = 5  # named points that charts and the table show
-LEFT_OUT = ("cell_m", "deepest_at_x_m", "value", "processor_s", "wall_s", "escaped_mass_kg", "escaped_share")  # numbers that are no outcomes
-UNIT = re.compile("_(kg_m_s|m_s2|m3_s|m_s|m3|m|J|Pa|N|kg|K|s|deg)$")  # by which names of outcomes end
+LEFT_OUT = ("cell_m", "deepest_at_x_m", "run_out_from_toe_m", "fall_height_m", "angle_of_reach_deg", "area_m2", "value", "processor_s", "wall_s", "escaped_mass_kg", "escaped_share")  # numbers that are no outcomes
+UNIT = re.compile("_(kg_m_s|m_s2|m3_s|m_s|m3|m2|m|J|Pa|N|kg|K|s|deg)$")  # by which names of outcomes end
 MET, NOT_MET, UNKNOWN = 1, 0, -1
 MANY = 6  # cases: more have no pictures of their fits
 # marker, how it is filled, and what it says

@@ -8,6 +8,23 @@ UNIT = re.compile(r"[A-Za-zµ°%][\w/^*.()²³µ°% -]*$")
 SHOWN = (("m2", "m²"), ("m3", "m³"), ("s2", "s²"), ("deg", "°"))  # how units are written
 DAY = 86400.0  # [s]
 TIMES = ((DAY, DAY, "d"), (3600, 3600, "h"), (120, 60, "min"))  # from so many seconds on
+# of US practice: factor from SI, unit, and from which number on the next larger one is used
+FOOT, POUND = 0.3048, 4.4482216152605
+US = {"m": ((1 / FOOT, "ft"),), "m/s": ((1 / FOOT, "ft/s"),), "m/s2": ((1 / FOOT, "ft/s2"),), "m²": ((FOOT**-2, "ft²"),), "m³": ((FOOT**-3, "ft³"),),
+      "m³/m": ((FOOT**-2, "ft³/ft"),), "Pa": ((FOOT**2 / POUND, "psf"), (FOOT**2 / POUND / 1e3, "ksf")), "N": ((1 / POUND, "lbf"), (1e-3 / POUND, "kip")),
+      "J": ((1 / (POUND * FOOT), "ft·lbf"), (1e-3 / (POUND * FOOT), "ft·kip")), "kg/m3": ((9.80665 * FOOT**3 / POUND, "pcf"),), "N/m3": ((FOOT**3 / POUND, "pcf"),),
+      "kg": ((9.80665 / POUND, "lb"),), "t": ((9806.65 / POUND / 1e3, "kip"),), "t/m": ((9806.65 / POUND / 1e3 * FOOT, "kip/ft"),), "kg/m": ((9.80665 / POUND * FOOT, "lb/ft"),)}
+_of_run = {"us": False}
+
+
+def use(scene):
+    """Lets all that is written from now on have the units that a scene asks for (output.units)."""
+    _of_run["us"] = scene.get("output", {}).get("units") == "US"
+
+
+def length():
+    """(factor, unit) of places."""
+    return US["m"][0] if _of_run["us"] else (1.0, "m")
 
 
 class Keys:
@@ -129,6 +146,8 @@ def capital(text):
 
 def readable_unit(largest, unit):
     """Factor and unit in which numbers up to `largest` read well: 110000 Pa -> (1e-3, 'kPa')."""
+    if _of_run["us"] and unit in US:
+        return next((one for one in reversed(US[unit]) if largest * one[0] >= 1), US[unit][0])
     if unit in ("Pa", "J", "N", "W"):
         for power, prefix in ((9, "G"), (6, "M"), (3, "k")):
             if largest >= 10**power:

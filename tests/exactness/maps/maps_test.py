@@ -271,9 +271,9 @@ class Maps(unittest.TestCase):
                 self.assertIn("soil at 0.100 s, 100 % of it still moving, at up to 10 m/s", said)
                 self.assertIn("100 % of what slid is faster than 0.1 m/s", said)
                 # from the crown, at the upper face of the block at the start, to the middle of the furthest cell
-                self.assertTrue(0.5 < numbers["run_out_m"] < np.hypot(1.5, 0.6) + cell)
+                self.assertTrue(0.5 < numbers["travel_distance_m"] < np.hypot(1.5, 0.6) + cell)
                 self.assertTrue(0.3 < numbers["fall_height_m"] < 0.5)  # particles lie inside of the block, 0.5 m high
-                angle = np.degrees(np.arctan(numbers["fall_height_m"] / numbers["run_out_m"]))
+                angle = np.degrees(np.arctan(numbers["fall_height_m"] / numbers["travel_distance_m"]))
                 self.assertAlmostEqual(numbers["angle_of_reach_deg"], angle, delta=1e-9)
                 change, _, _ = read(FOLDER / results / "maps/change.tif")
                 self.assertLess(change[3, 1], -0.4)
