@@ -18,7 +18,7 @@ from PIL.PngImagePlugin import PngInfo
 INK, SOFT, FAINT, ACCENT = "#1f2933", "#616e7c", "#cbd2d9", "#0b7285"
 LINES = ("#0b7285", "#d9480f", "#5f3dc4", "#2b8a3e", "#c2255c", "#e67700", "#6f4518", "#868e96")
 EDGE = 0.12  # between titles and the edge of a chart [inch]
-RESOLUTION = 170  # dots per inch
+RESOLUTION = 120  # dots per inch
 PACKED = 4  # of 9: how thoroughly pictures are packed
 
 plt.rcParams.update({

@@ -36,9 +36,16 @@ class Keys:
 
     def text(self, path, kind, key, value):
         """The value of a key in words; `path` is that of its table, such as body.NAME, and `kind` names its law, kind or curve."""
+        return text_of(value, *self._about(path, kind, key))
+
+    def _about(self, path, kind, key):
         table = self._keys.get(path, {})
         about = table.get("", {}).get(key) or table.get(kind, {}).get(key) or {}
-        return text_of(value, about.get("unit", ""), about.get("over_time", False))
+        return about.get("unit", ""), about.get("over_time", False)
+
+    def about(self, path, table, key):
+        """(unit, whether it may change over time) of a key of a table of the scene."""
+        return self._about(path, table.get("kind", table.get("law", "")), key)
 
     def row(self, path, values, kind_key=""):
         """{key in words: value in words} of a table of the scene; a table inside it on one line."""
@@ -87,10 +94,10 @@ def list_of(values, unit, over_time):
     return text if over_time or own else with_shown(text, unit)
 
 
-def quantity(value, unit):
+def quantity(value, unit, digits=".6g"):
     """A number in a unit in which it reads well."""
     factor, unit = readable_unit(abs(value), unit)
-    return with_shown(f"{factor * value:.6g}", unit)
+    return with_shown(f"{factor * value:{digits}}", unit)
 
 
 def span(low, high, unit):
