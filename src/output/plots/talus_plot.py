@@ -20,6 +20,7 @@ from talus_sections import draw_sections
 from talus_slip import draw_slip_surface
 
 FIELDS = ("displacement", "thickness", "plastic_strain", "velocity", "pore_pressure", "suction", "saturation", "surface", "mobilised_friction", "state")
+OVER_TIME = ("displacement", "thickness")  # which have a sheet of several times unasked: the report plays the others
 OF_PARTICLES = ("id", "body")  # numbers that are no quantities
 OF_MECHANISM = "shear_strain"  # field that says nothing but of the mechanism of a factor of safety
 OF_PORES = ("pore_pressure", "gas_pressure", "suction", "saturation")
@@ -86,7 +87,8 @@ def draw(folder, fields=None, times=None, log=False, slip_surface=False):
     usual = [field for field in FIELDS if field != "state" or lost_strength(results)]
     whole, results = results, results.before_reduction()
     of_mechanism = [field for field in fields or () if field == OF_MECHANISM and whole is not results]
-    sections = draw_sections(results, [field for field in fields or usual if field not in of_mechanism], times, pictures, log)
+    sections = draw_sections(results, [field for field in fields or usual if field not in of_mechanism], times, pictures, log,
+                             None if fields or times else OVER_TIME)
     if of_mechanism:
         sections += draw_sections(whole.of_reduction(), of_mechanism, times, pictures)
     curves = draw_histories(results, pictures) + draw_stress_paths(results, pictures)

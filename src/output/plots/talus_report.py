@@ -351,7 +351,7 @@ def section(name, content, own=""):
 
 def field_block(field, large, over_time):
     name = capital(words(field))
-    return f'<div class="field">{picture(large, name)}{picture(over_time, f"{name} over time")}</div>'
+    return f'<div class="field">{picture(large, name)}{picture(over_time, f"{name} over time") if over_time else ""}</div>'
 
 
 def factor_block(factor, pictures):

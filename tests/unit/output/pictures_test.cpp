@@ -121,7 +121,7 @@ TEST(Pictures, show_stress_paths_and_the_water_ledger) {
            "ledger,kg,run,error\n");
   ASSERT_TRUE(draw_pictures(dir));
   EXPECT_EQ(content(dir + "/pictures/strength.csv").substr(0, 40), "body,state,suction_Pa,slope,intercept_Pa");
-  for (const char *name : {"stress_paths.png", "mobilised_friction.png", "state.png", "water_ledger.png"})
+  for (const char *name : {"stress_paths.png", "mobilised_friction_large.png", "state_large.png", "water_ledger.png"})
     EXPECT_EQ(content(dir + "/pictures/" + name).substr(1, 3), "PNG") << name;
 }
 
