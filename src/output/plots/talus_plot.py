@@ -14,6 +14,7 @@ from talus_histories import draw_histories
 from talus_lines import draw_lines
 from talus_movie import draw_movies
 from talus_paths import draw_stress_paths
+from talus_pdf import print_report
 from talus_report import write_report
 from talus_results import NOT_ENDED, Results
 from talus_sections import draw_sections
@@ -35,6 +36,7 @@ def arguments():
     parser.add_argument("--log", action="store_true", help="plastic strain on a logarithmic scale")
     parser.add_argument("--slip-surface", action="store_true", help="find the slip surface, at the first of the times or at failure")
     parser.add_argument("--movie", action="store_true", help="a film of the fields instead: of plastic strain or, without any, of displacement")
+    parser.add_argument("--pdf", action="store_true", help="print the report as DIR/report.pdf too")
     return parser.parse_args()
 
 
@@ -120,7 +122,9 @@ def main():
         if given.movie:
             film(given.folder, given.fields, given.log)
         else:
-            draw(given.folder, given.fields, given.times, given.log, given.slip_surface)
+            report = draw(given.folder, given.fields, given.times, given.log, given.slip_surface)
+            if given.pdf:
+                print_report(report)
     except NoSuchField as error:
         print(f"talus: {error}", file=sys.stderr)
         return 2

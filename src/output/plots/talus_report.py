@@ -1,6 +1,7 @@
 """report.html: one page that stands alone, with the pictures inside it."""
 
 import base64
+import csv
 import datetime
 import html
 import pathlib
@@ -15,9 +16,10 @@ from talus_model import draw_model
 from talus_modelled import read_model, stage_rows
 from talus_moments import moved_before
 from talus_outcomes import in_words, outcome
-from talus_play import scripts
+from talus_play import ROWS, scripts
 from talus_results import NOT_ENDED, SLOW, largest_displacement, read_factor, sliding, still_moving
 from talus_units import Keys, at_time, capital, readable_unit, text_of, words
+from talus_workbook import write_workbook
 
 LOG_LINES = 25
 LEDGERS = ("Particles", "Mass ledger", "Largest plastic strain")  # besides those of the bases
@@ -65,7 +67,26 @@ def write_report(results, sections, histories, factor=()):
     page = PAGE.format(title=html.escape(results.title), css=css, body="".join(parts), foot=html.escape(results.program))
     path = results.folder / "report.html"
     path.write_text(page)
+    write_tables(results, model, found)
     return path
+
+
+def write_tables(results, model, numbers):
+    """report.csv with the numbers of the report, and report.xlsx with these, the stages, soils and boundaries, and the history in its SI units."""
+    rows = [("quantity", "value", "note"), *numbers]
+    with open(results.folder / "report.csv", "w", newline="") as file:
+        csv.writer(file, lineterminator="\n").writerows(rows)
+    tables, keys = {"Numbers": rows}, model.keys if model else Keys()
+    if model:
+        tables["Stages"] = stage_rows(model)
+    for name, path, kind in (("Soils", "body", "law"), ("Boundaries", "boundary", "kind")):
+        given = {one: keys.row(f"{path}.NAME", values, kind) for one, values in results.scene.get(path, {}).items()}
+        columns = list(dict.fromkeys(key for row in given.values() for key in row))
+        tables[name] = [("name", *columns), *((one, *(row.get(key, "") for key in columns)) for one, row in given.items())]
+    if history := results.history:
+        kept = slice(None, None, -(-len(history.time) // ROWS))
+        tables["History"] = [("time_s", "stage", *history.names()), *zip(history.time[kept].tolist(), history.stage[kept], *(values[kept].tolist() for values in history.columns.values()))]
+    write_workbook(results.folder / "report.xlsx", tables)
 
 
 def header(results, model):
@@ -134,7 +155,7 @@ def key_results(results, model=None):
             volume = came_to["volume_of_slide_m3"]
             note = "no soil slides" if volume is None else "moved more than a tenth of the largest"
             found.append(("Sliding volume", quantity(volume or 0.0, results.per_metre("m³")), note + without))
-            if came_to["travel_distance_m"]:
+            if came_to.get("travel_distance_m"):
                 found += run_out(came_to)
     depth = flow(results) if "displacement" in last and "volume" in last else None
     if depth:

@@ -29,6 +29,7 @@ from talus_statistics import ORDERS, clopper_pearson, extrapolate, order_of, res
 from talus_style import plt
 from talus_table import folded, lines_of
 from talus_units import readable_unit, shown, with_unit, words
+from talus_workbook import write_workbook
 
 SHOWN = ("factor_of_safety", "load_time_of_failure_s", "travel_distance_m", "largest_displacement_m")  # of a study
 OF_SLIDE = ("travel_distance_m", "volume_of_slide_m3", "depth_of_slide_m")  # 0 where the slope stands
@@ -526,6 +527,7 @@ def main():
         writer = csv.DictWriter(file, names, lineterminator="\n")
         writer.writeheader()
         writer.writerows({name: written(value) for name, value in row.items()} for row in rows)
+    write_workbook(given.folder / "study.xlsx", {"Runs": [[*names], *([row.get(name) for name in names] for row in rows)]})
     write_json(given.folder / "study.json", {"title": runs.title, "runs": len(rows), "planned": design["planned"], "broke_off": broke_off, "warnings": runs.warnings()} | page)
     print("\n".join([*lines, *map(folded, told)]), flush=True)
     for name in ("tornado", "scatter", "exceedance", "outcomes", "errors"):
