@@ -12,6 +12,7 @@ import math
 import numpy as np
 
 from talus_measures import failure, largest_share_displacement, particles, slide, steps
+from talus_units import quantity
 
 FAILS, MOVES, STANDS = "fails", "moves", "stands"
 # Of the slope of tests/exactness/results/outcomes.py, in cells of 0.77 m, plastic strain times cell is 0.31 to 0.38 of the displacement in runs that slid by
@@ -62,13 +63,13 @@ def outcome(results, cell=None):
 
 def in_words(row, cell):
     """Why a run has its state, in a few words."""
+    small, cell = row["largest_displacement_m"] <= SMALL * cell, quantity(cell, "m", ".2g")
     if row["state"] == FAILS:
         load = row["load_time_of_failure_s"]
-        return f"soil moved by more than a cell of {cell:.2g} m" if load is None else f"the watched point failed under the loads of t = {load:.3g} s"
+        return f"soil moved by more than a cell of {cell}" if load is None else f"the watched point failed under the loads of t = {load:.3g} s"
     if row["state"] == MOVES:
-        return f"soil slid by less than a cell of {cell:.2g} m: smaller cells show whether it fails"
-    small = row["largest_displacement_m"] <= SMALL * cell
-    return f"no soil moved by more than {100 * SMALL:g} % of a cell of {cell:.2g} m" if small else "soil deformed as a whole, without sliding"
+        return f"soil slid by less than a cell of {cell}: smaller cells show whether it fails"
+    return f"no soil moved by more than {100 * SMALL:g} % of a cell of {cell}" if small else "soil deformed as a whole, without sliding"
 
 
 def losses(rows):

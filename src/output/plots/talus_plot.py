@@ -19,6 +19,7 @@ from talus_report import write_report
 from talus_results import NOT_ENDED, Results
 from talus_sections import draw_sections
 from talus_slip import draw_slip_surface
+from talus_units import use
 
 FIELDS = ("displacement", "thickness", "plastic_strain", "velocity", "pore_pressure", "suction", "saturation", "surface", "mobilised_friction", "state")
 OVER_TIME = ("displacement", "thickness")  # which have a sheet of several times unasked: the report plays the others
@@ -47,6 +48,7 @@ class NoSuchField(ValueError):
 def checked(folder, fields=None):
     """The results in a folder, which have snapshots and the fields. Raises NoSuchField with the nearest one."""
     results = Results(folder)
+    use(results.scene)
     if not results.snapshots:
         raise ValueError(f"{folder} contains no snapshots")
     first = results.snapshots[0]

@@ -274,8 +274,8 @@ class Painter:
         elif view.plane:
             self._bottom(axes, view)
         tall = inches * (high[1] - low[1]) / (high[0] - low[0])
-        axes.xaxis.set_major_locator(MaxNLocator(max(3, int(inches / 0.6)), steps=[1, 2, 5, 10]))
-        axes.yaxis.set_major_locator(MaxNLocator(max(2, int(tall / 0.4)), steps=[1, 2, 5, 10]))
+        style.places(axes.xaxis, max(3, int(inches / 0.6)))
+        style.places(axes.yaxis, max(2, int(tall / 0.4)))
 
     def _mirror_as_needed(self, axes, view):
         """A view from above is not one from below: the second axis runs downward where the two and the upward axis are left-handed."""

@@ -374,7 +374,7 @@ def charted(rows, in_plane=False):
         of = found.setdefault(named(ending[1:] or column, in_plane), {})
         if len(of) < MOST:
             of[words(column.removesuffix(ending)) if ending else ""] = column
-    return found
+    return {f"{next(iter(of))} {title}".strip() if len(of) == 1 else title: of for title, of in found.items()}
 
 
 def outcomes(runs, _):
@@ -448,6 +448,7 @@ def errors(runs, design):
 THINGS = {"cells": "cell size", "steps": "time step", "particles": "number of particles per cell"}
 VERDICTS = {"missing": "the {thing} decides it", "equal": "the {thing} does not decide it within {allowed}", "swings": "it swings, and the {thing} decides it",
             "settles": "it settles, to {limit} by extrapolation at the order {order}, and the last refinement changes it by {last}, within {allowed}",
+            "near": "the last refinement changes it by {last}, a tenth or less of {allowed}, and the {thing} does not decide it",
             "open": "it does not settle, and the {thing} decides it"}
 
 
@@ -461,7 +462,7 @@ def percent(difference, values):
     return f"{share:.2g} %" if share >= 0.01 else "0 %"
 
 
-def said_of_quantity(one, rows, thing, within, in_plane):
+def said_of_quantity(one, rows, thing, in_plane):
     """A sentence on what refinement does to a quantity."""
     name, _, unit = named(one["quantity"], in_plane).partition(" [")
     values = [value for value in one["values"] if value is not None]
@@ -469,8 +470,10 @@ def said_of_quantity(one, rows, thing, within, in_plane):
     text = f"The {name} is {factor * min(values):.3g} to {factor * max(values):.3g} {unit}, {percent(max(values) - min(values), values)} apart"
     if one["state"] == "missing":
         text += f" and missing with {', '.join(refined(row) for row, value in zip(rows, one['values']) if value is None)}"
-    numbers = {"limit": f"{factor * one['limit']:.3g} {unit}", "order": f"{one['order']:.2g}", "last": percent(abs(values[-1] - values[-2]), values)} if one["order"] else {}
-    return f"{text}: {VERDICTS[one['state']].format(thing=thing, allowed=f'{100 * within:g} %' + ' or one cell' * (one['quantity'] in TO_A_CELL), **numbers)}."
+    numbers = {"last": percent(abs(values[-1] - values[-2]), values)} if len(values) > 1 else {}
+    if one["order"]:
+        numbers |= {"limit": f"{factor * one['limit']:.3g} {unit}", "order": f"{one['order']:.2g}"}
+    return f"{text}: {VERDICTS[one['state']].format(thing=thing, allowed=one['allowed'], **numbers)}."
 
 
 def judge(rows, by, within, in_plane=False):
@@ -492,9 +495,10 @@ def judge(rows, by, within, in_plane=False):
         if any(value is not None for value in values):
             verdict = settles(sizes, values, within, cell if key in TO_A_CELL else 0.0)
             order = order_of(sizes[-3:], values[-3:], ORDERS) if verdict == "settles" else None
-            judged.append({"quantity": key, "values": values, "state": verdict, "order": order, "limit": order and values[-1] + rest_of(sizes, values, order)})
-            sentences.append(said_of_quantity(judged[-1], rows, thing, within, in_plane))
-            decides |= verdict not in ("equal", "settles")
+            of_cell = key in TO_A_CELL and cell > within * abs(values[-1] or 0)
+            judged.append({"quantity": key, "values": values, "state": verdict, "allowed": f"one cell of {cell:.2g} m" if of_cell else f"{100 * within:g} %", "order": order, "limit": order and values[-1] + rest_of(sizes, values, order)})
+            sentences.append(said_of_quantity(judged[-1], rows, thing, in_plane))
+            decides |= verdict not in ("equal", "settles", "near")
     return sentences + [f"Until another {thing} no longer changes these numbers, their scatter is their error."] * decides, decides, judged
 
 

@@ -11,9 +11,11 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.colors import LinearSegmentedColormap, ListedColormap
-from matplotlib.ticker import FuncFormatter, Locator, NullFormatter
+from matplotlib.ticker import FuncFormatter, Locator, MaxNLocator, NullFormatter
 from PIL import Image
 from PIL.PngImagePlugin import PngInfo
+
+from talus_units import length
 
 INK, SOFT, FAINT, ACCENT = "#1f2933", "#616e7c", "#cbd2d9", "#0b7285"
 LINES = ("#0b7285", "#d9480f", "#5f3dc4", "#2b8a3e", "#c2255c", "#e67700", "#6f4518", "#868e96")
@@ -52,6 +54,20 @@ SYMBOL = {"displacement": "|u|", "velocity": "|v|", "thickness": "h", "plastic_s
 
 def colours_of(field, signed=False):
     return SIGNED.get(field, BOTH) if signed else MAPS.get(field, plt.get_cmap("cividis"))
+
+
+class Places(MaxNLocator):
+    """Ticks of places [m] at round numbers of the unit of the run."""
+
+    def tick_values(self, low, high):
+        return super().tick_values(low * length()[0], high * length()[0]) / length()[0]
+
+
+def places(axis, most):
+    """Lets an axis of places have at most so many intervals, and numbers in the unit of the run."""
+    axis.set_major_locator(Places(most, steps=[1, 2, 5, 10]))
+    if length()[0] != 1:
+        axis.set_major_formatter(FuncFormatter(lambda at, _: f"{round(at * length()[0], 6):g}"))
 
 
 class LogTicks(Locator):
