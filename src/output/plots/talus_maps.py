@@ -14,6 +14,7 @@ from osgeo import gdal, ogr, osr
 import talus_style as style
 from talus_ground import Ground
 from talus_map_pictures import draw_map, draw_section
+from talus_qgis import add_styles, of_grid
 from talus_results import NOT_ENDED, SLOW, Results, Thickness, largest_displacement, still_moving
 from talus_units import words
 from talus_way import Way
@@ -335,6 +336,7 @@ def write_rasters(maps, folder, ascii_grids):
     options = ("COMPRESS=DEFLATE",)
     for name, values, unit, meaning in maps.layers():
         made = raster(maps, [(values, meaning, unit)], folder / f"{name}.tif", "GTiff", options)
+        (folder / f"{name}.qml").write_text(of_grid(name, values, unit))
         if ascii_grids:
             gdal.GetDriverByName("AAIGrid").CreateCopy(str(folder / f"{name}.asc"), made, options=["SIGNIFICANT_DIGITS=8"])
         made.FlushCache()
@@ -364,6 +366,7 @@ def write_vectors(maps, path):
             feature.SetField(key, int(value) if isinstance(value, bool) else float(value))
         feature.SetGeometry(geometry)
         layer.CreateFeature(feature)
+    add_styles(made)
     made.FlushCache()
 
 

@@ -112,7 +112,7 @@ def slide_over_time(results, packed):
     drawn = (len(frames[-1].ids()) / max(1, len(ids))) ** (1 / dimension)
     return {"dimension": dimension, "up": results.up_axis(), "low": low.tolist(), "high": high.tolist(), "count": len(ids), "of": len(frames[-1].ids()),
             "size": size * min(drawn, 3.0), "times": [frame.time for frame in frames], "says": [f"{results.when(frame)}  ·  {frame.stage}" for frame in frames],
-            "soils": [words(name) for name in results.bodies], "tints": (255 * tints(len(results.bodies))).round().astype(int).tolist(),
+            "soils": [words(name) for name in results.bodies], "tints": (255 * tints(results.bodies)).round().astype(int).tolist(),
             "place": packed.add(place, "<u2"), "body": packed.add(body, "u1"), "ground": ground(results, packed) if dimension == 3 else None,
             "fields": [{"name": capital(words(field)), "unit": shown(colours[field].unit), "value": packed.add(value[number], "u1"), **scale(colours[field])}
                        for number, field in enumerate(fields)]}

@@ -58,7 +58,7 @@ class Painter:
         self._tiles, self._surfaces = {}, {}
         # a section alone shows soils in the colours of the model; views in space shade all soil alike
         self.flat = len(self.views) == 1
-        self.tints = tints(len(results.bodies)) if self.flat else None
+        self.tints = tints(results.bodies) if self.flat else None
         self.marked_escaped, self.drawn_outline = 0, False
         self.slips = []  # (name, points [n, 2], style of the line) of slip surfaces, which pictures of one time show in a section alone
         self.reset, self.since = "", {}  # stage at whose end the field was last set to 0; {step: what it counts from}, where that differs

@@ -4,6 +4,7 @@ import io
 import os
 import pathlib
 import re
+import zlib
 
 import matplotlib
 
@@ -40,6 +41,19 @@ def part_of(name, low, high):
 
 
 GROUND = ("#e8d5b0", "#c2a278", "#b9bfa4", "#a9a29a", "#e0b88a", "#d5cfc9", "#a8895f", "#d8c774")  # of the soils
+
+
+def soil_colours(names):
+    """The colour of each soil, by its name: a further soil takes one that is free, and most others keep theirs."""
+    found, free = {}, list(GROUND)
+    for name in sorted(names, key=lambda one: zlib.crc32(one.encode())):
+        wanted = GROUND[zlib.crc32(name.encode()) % len(GROUND)]
+        found[name] = wanted if wanted in free else free[0]
+        free.remove(found[name])
+        free = free or list(GROUND)
+    return [found[name] for name in names]
+
+
 STATES = ("elastic", "peak", "softening", "residual")  # values 0, 1, 2, 3 of the field state
 STATE_COLOURS = ("#eef1f4", "#ffd43b", "#f76707", "#c92a2a")
 # of even steps in lightness; strain and pressure start pale, so that the eye goes to where there is some

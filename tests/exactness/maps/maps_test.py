@@ -15,6 +15,7 @@ import tempfile
 import types
 import unittest
 import unittest.mock
+import xml.dom.minidom
 
 import h5py
 import numpy as np
@@ -241,6 +242,10 @@ class Maps(unittest.TestCase):
                 self.assertEqual((reference.GetName(), reference.IsGeographic()), ("Undefined Cartesian SRS", 0))
                 with contextlib.closing(sqlite3.connect(FOLDER / results / "maps/deposit.gpkg")) as package:
                     self.assertEqual(package.execute("select distinct srs_id from gpkg_geometry_columns").fetchall(), [(-1,)])
+                    self.assertEqual(package.execute("select f_table_name, useAsDefault from layer_styles").fetchall(), [("outline", 1), ("path", 1)])
+                style = xml.dom.minidom.parse(str(FOLDER / results / "maps/thickness.qml"))  # by which QGIS opens the grid
+                self.assertEqual(float(style.getElementsByTagName("item")[0].getAttribute("value")), 0)
+                self.assertEqual({path.stem for path in (FOLDER / results / "maps").glob("*.qml")}, {"thickness", "largest_thickness", "largest_speed", "arrival_time", "change"})
                 west, east, south, north = outline.GetEnvelope()
                 np.testing.assert_allclose([west, east, south, north], [1.5, 2, -0.6, 0], atol=cell)
                 self.assertAlmostEqual(numbers["area_m2"], outline.GetArea(), delta=1e-9)
