@@ -37,6 +37,7 @@ def arguments():
     parser.add_argument("--log", action="store_true", help="plastic strain on a logarithmic scale")
     parser.add_argument("--slip-surface", action="store_true", help="find the slip surface, at the first of the times or at failure")
     parser.add_argument("--movie", action="store_true", help="a film of the fields instead: of plastic strain or, without any, of displacement")
+    parser.add_argument("--since", metavar="STAGE", help="displacement since the start of this stage, without what soil moved under its own weight before")
     parser.add_argument("--pdf", action="store_true", help="print the report as DIR/report.pdf too")
     return parser.parse_args()
 
@@ -72,10 +73,15 @@ def tell_of_times(results, times):
             print(f"talus: --times {time:g}: the run has snapshots from {first:g} to {last:.6g} s; that at {shown:.6g} s is shown", file=sys.stderr)
 
 
-def draw(folder, fields=None, times=None, log=False, slip_surface=False):
+def draw(folder, fields=None, times=None, log=False, slip_surface=False, since=None):
     """Draws everything; without `fields`, those of FIELDS that the run has, of which the state of strength only where strength was lost. Returns
     the report's path."""
     results = checked(folder, fields)
+    if since:
+        try:
+            results = results.since(since)
+        except KeyError as error:
+            raise NoSuchField(f"--since: {error.args[0]}") from error
     tell_of_times(results, times)
     if results.broke_off() == NOT_ENDED:  # a run that broke off has said why
         print(f"talus: the run in {folder} is incomplete: {NOT_ENDED}; the pictures show it up to {results.snapshots[-1].time:.6g} s", file=sys.stderr)
@@ -124,7 +130,7 @@ def main():
         if given.movie:
             film(given.folder, given.fields, given.log)
         else:
-            report = draw(given.folder, given.fields, given.times, given.log, given.slip_surface)
+            report = draw(given.folder, given.fields, given.times, given.log, given.slip_surface, given.since)
             if given.pdf:
                 print_report(report)
     except NoSuchField as error:

@@ -264,7 +264,7 @@ def said_of_probability(p):
 
 def sensitivities(rows, variables, outcome):
     """Effect of each numeric variable on an outcome from a linear fit in all of them: change of the outcome from the 10 % to the 90 % quantile of
-    the variable, the others at their means. Means and quantiles are those of the runs with this outcome; too few of them have no bars."""
+    the variable, or from the least to the largest of the values that were chosen for it, the others at their means. Means and quantiles are those of the runs with this outcome; too few of them have no bars."""
     known = [row for row in rows if row.get(outcome) is not None]
     y = np.array([float(row[outcome]) for row in known])
     fit = {"outcome": outcome, "runs": len(known), "mean": float(y.mean()) if len(y) else None, "r2": None, "bars": []}
@@ -274,9 +274,9 @@ def sensitivities(rows, variables, outcome):
     x = np.array([[float(row[v["name"]]) for v in varies] for row in known])
     middle, spread = x.mean(0), x.std(0)
     factors, *_ = np.linalg.lstsq((x - middle) / spread, y - y.mean(), rcond=None)
-    quantiles = np.quantile(x, [0.1, 0.9], axis=0)  # of the runs with this outcome, not of the distribution
-    low, high = y.mean() + factors * (quantiles - middle) / spread
-    bars = [{"variable": v["name"], "unit": v["unit"], "quantiles": quantiles[:, k].tolist(), "low": float(low[k]), "high": float(high[k])} for k, v in enumerate(varies)]
+    ends = np.column_stack([np.quantile(of, [0.1, 0.9]) if v["random"] else (of.min(), of.max()) for v, of in zip(varies, x.T)])  # of the runs with this outcome
+    low, high = y.mean() + factors * (ends - middle) / spread
+    bars = [{"variable": v["name"], "unit": v["unit"], "quantiles" if v["random"] else "ends": ends[:, k].tolist(), "low": float(low[k]), "high": float(high[k])} for k, v in enumerate(varies)]
     bars.sort(key=lambda bar: abs(bar["high"] - bar["low"]))
     return fit | {"r2": float(1 - np.var(y - y.mean() - (x - middle) / spread @ factors) / np.var(y)), "bars": bars}
 
@@ -290,11 +290,13 @@ def tornado(fits, in_plane):
         if axes is not drawn[0]:
             axes.sharex(drawn[0])
         for k, bar in enumerate(fit["bars"]):
-            for end, colour, label in (("low", style.LINES[0], "variable at the 10 % quantile of these runs"), ("high", style.LINES[1], "at their 90 % quantile")):
+            labels = ("variable at the 10 % quantile of these runs", "at their 90 % quantile") if "quantiles" in bar else ("variable at its least value", "at its largest value")
+            for end, colour, label in zip(("low", "high"), style.LINES, labels):
                 axes.barh(k, bar[end] - fit["mean"], left=fit["mean"], height=0.62, color=colour, label=label)
         if fit["mean"] is not None:
             axes.axvline(fit["mean"], color=style.INK, lw=0.8)
-        axes.set_yticks(range(len(fit["bars"])), [f"{words(bar['variable'])}\n{bar['quantiles'][0]:.3g} to {bar['quantiles'][1]:.3g} {bar['unit']}".rstrip() for bar in fit["bars"]])
+        ends = [bar.get("quantiles") or bar["ends"] for bar in fit["bars"]]
+        axes.set_yticks(range(len(ends)), [f"{words(bar['variable'])}\n{low:.3g} to {high:.3g} {bar['unit']}".rstrip() for bar, (low, high) in zip(fit["bars"], ends)])
         axes.set_xlabel(textwrap.fill(named(fit["outcome"], in_plane), 52))
         said = f"linear fit to {fit['runs']} runs, R² = {fit['r2']:.2f}" if fit["bars"] else f"no fit to {fit['runs']} runs"
         axes.set_title("\n".join(filter(None, (textwrap.fill(fit["case"], 44), said))), loc="right", fontsize=8)

@@ -1365,9 +1365,13 @@ class Charts(unittest.TestCase):
 
     def test_quantiles_of_a_tornado_are_of_the_runs_with_the_outcome(self):
         rows = [{"c": str(k), "factor_of_safety": float(k) if k > 10 else None} for k in range(1, 31)]
-        fit = talus_study.sensitivities(rows, [{"name": "c", "unit": "Pa", "numeric": True}], "factor_of_safety")
+        variable = {"name": "c", "unit": "Pa", "numeric": True, "random": True}
+        fit = talus_study.sensitivities(rows, [variable], "factor_of_safety")
         self.assertEqual(fit["runs"], 20)
         self.assertAlmostEqual(fit["bars"][0]["quantiles"][0], 11 + 0.1 * 19)
+        chosen = talus_study.sensitivities(rows, [variable | {"random": False}], "factor_of_safety")["bars"][0]  # who chose the values gets no quantiles of them
+        self.assertEqual(chosen["ends"], [11, 30])
+        self.assertNotIn("quantiles", chosen)
 
 
 class Mechanisms(unittest.TestCase):
