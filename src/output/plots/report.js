@@ -121,7 +121,7 @@
     function draw() {
       const wide = Math.max(1, canvas.clientWidth), ratio = devicePixelRatio || 1;
       const tall = solid ? 0.62 * wide : Math.min(0.75 * wide, Math.max(0.22 * wide, (1.08 * wide * span[1]) / span[0]));
-      canvas.style.height = `${tall}px`;
+      canvas.style.aspectRatio = `${wide} / ${tall}`;
       canvas.width = wide * ratio;
       canvas.height = tall * ratio;
       gl.viewport(0, 0, canvas.width, canvas.height);
