@@ -12,7 +12,7 @@ struct PictureChoice {
   bool logarithmic = false;         ///< scale of plastic strain
   bool slip_surface = false;        ///< finds it, in plane strain
   bool movie = false;               ///< draws a film of the fields and nothing else
-  std::string since;                ///< stage from whose start displacement counts
+  std::string since = {};           ///< stage from whose start displacement counts
   bool pdf = false;                 ///< the report as PDF too
 };
 

@@ -227,7 +227,7 @@ def bounds(factor):
 def motion_at_end(last):
     """Whether the soil that slid has come to rest, in words; empty if it has."""
     moving = still_moving(last, last.ids()[sliding(last)])
-    return f"; still moving: {100 * moving[0]:.3g} % of what slid is faster than {SLOW:g} m/s, at up to {quantity(moving[1], 'm/s')}" if moving else ""
+    return f"; still moving: {100 * moving[0]:.3g} % of what slid is faster than {quantity(SLOW, 'm/s')}, at up to {quantity(moving[1], 'm/s')}" if moving else ""
 
 
 def bases(results):

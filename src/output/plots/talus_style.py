@@ -40,7 +40,7 @@ def part_of(name, low, high):
     return LinearSegmentedColormap.from_list(f"{name}_part", plt.get_cmap(name)(np.linspace(low, high, 256)))
 
 
-GROUND = ("#e8d5b0", "#c2a278", "#b9bfa4", "#a9a29a", "#e0b88a", "#d5cfc9", "#a8895f", "#d8c774")  # of the soils
+GROUND = ("#a9a29a", "#c2a278", "#b9bfa4", "#e8d5b0", "#e0b88a", "#d5cfc9", "#a8895f", "#d8c774")  # of the soils
 
 
 def soil_colours(names):

@@ -32,7 +32,7 @@ TEST(Pictures, and_a_report_are_drawn_from_the_results) {
   describe(dir,
            "crest_displacement_m,displacement,m,point,crest\nkinetic_J,energy,J,run,kinetic\nmass_kg,mass,kg,run,\n");
   ASSERT_TRUE(draw_pictures(dir));
-  for (const char *name : {"displacement.png", "plastic_strain.png", "history_displacement.png", "energy.png"})
+  for (const char *name : {"displacement.png", "plastic_strain_large.png", "history_displacement.png", "energy.png"})
     EXPECT_EQ(content(dir + "/pictures/" + name).substr(1, 3), "PNG") << name;
   const std::string drawn_by = std::string("Software") + '\0' + program + ",";  // of PNG's type tEXt
   EXPECT_NE(content(dir + "/pictures/displacement.png").find(drawn_by), std::string::npos);
