@@ -274,8 +274,9 @@
   if (about.slide && byId("slide")) play(about.slide, byId("slide"));
   if (about.histories && byId("curves")) {
     const made = about.histories.charts.map((one) => chart(array(about.histories.time), one));
-    byId("curves").prepend(make("div", { className: "grid" }, ...made.map(([figure]) => figure)));
-    byId("curves").classList.add("plays");
+    const named = new Set(about.histories.charts.map((one) => one.name));
+    byId("curves").querySelectorAll("figure").forEach((figure) => (figure.hidden = named.has(figure.firstChild.alt)));
+    (byId("curves").querySelector("h2") ?? byId("curves")).after(make("div", { className: "grid", style: "margin-bottom:14px" }, ...made.map(([figure]) => figure)));
     made.forEach(([, draw]) => draw());
   }
   document.documentElement.dataset.ready = "yes";

@@ -3,26 +3,13 @@
 import ast
 import math
 import operator
-import re
 
 import numpy as np
 
-from talus_units import quantity, words
+from talus_units import number, quantity, words
 
-SI = {"": 1, "Pa": 1, "kPa": 1e3, "MPa": 1e6, "N/m2": 1, "kN/m2": 1e3, "psf": 47.88025898, "ksf": 47880.25898, "psi": 6894.757293, "bar": 1e5,
-      "m": 1, "cm": 0.01, "mm": 1e-3, "ft": 0.3048, "s": 1, "min": 60, "h": 3600, "day": 86400, "d": 86400, "deg": 1, "m/s": 1, "mm/h": 1e-3 / 3600, "mm/day": 1e-3 / 86400}
 DOES = {ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv, ast.Pow: operator.pow, ast.USub: operator.neg, ast.UAdd: operator.pos}
 CALLS = {name: getattr(math, name) for name in ("sin", "cos", "tan", "sqrt", "exp")} | {"min": min, "max": max, "abs": abs}
-
-
-def number(value):
-    """A number of a scene in SI. Raises ValueError where it is an expression, or has a unit that is not known here."""
-    if isinstance(value, (int, float)):
-        return float(value)
-    match = re.fullmatch(r"\s*([-+]?[\d.]+(?:[eE][-+]?\d+)?)\s*([A-Za-z/0-9]*)\s*", value) if isinstance(value, str) else None
-    if not match or match[2] not in SI:
-        raise ValueError(value)
-    return float(match[1]) * SI[match[2]]
 
 
 def value_at(value, time, functions):

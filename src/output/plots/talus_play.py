@@ -9,7 +9,7 @@ import numpy as np
 
 from talus_colours import Colours
 from talus_histories import ELSEWHERE, changes, drawn_energies
-from talus_moments import chosen_snapshots, scaled_by
+from talus_moments import RESET, chosen_snapshots, last_reset, scaled_by
 from talus_results import sliding
 from talus_soils import tints
 from talus_units import capital, length, readable_unit, shown, words
@@ -159,10 +159,12 @@ def histories(results, packed):
     if history is None or len(history.time) < 2:
         return None
     kept = slice(None, None, -(-len(history.time) // ROWS))
-    charts = []
+    charts, reset = [], last_reset(results)
     for (quantity, unit), lines in history.groups().items():
         if quantity in ELSEWHERE or quantity.startswith("stress_") or quantity.endswith(("_x", "_y", "_z", "_ledger")):
             continue
+        if reset and quantity in RESET:  # what is set to 0 begins there
+            lines = {name: np.where(history.time > reset[0] * (1 + 1e-9), values, np.nan) for name, values in lines.items()}
         if quantity == "energy":
             lines = drawn_energies(lines)
         lines = {name: values for name, values in lines.items() if changes(values)}

@@ -10,11 +10,13 @@ DAY = 86400.0  # [s]
 TIMES = ((DAY, DAY, "d"), (3600, 3600, "h"), (120, 60, "min"))  # from so many seconds on
 # of US practice: factor from SI, unit, and from which number on the next larger one is used
 FOOT, POUND = 0.3048, 4.4482216152605
-US = {"m": ((1 / FOOT, "ft"),), "m/s": ((1 / FOOT, "ft/s"),), "m/s2": ((1 / FOOT, "ft/s2"),), "m²": ((FOOT**-2, "ft²"),), "m³": ((FOOT**-3, "ft³"),),
+US = {"m": ((1 / FOOT, "ft"),), "m/s": ((1 / FOOT, "ft/s"),), "m/s2": ((1 / FOOT, "ft/s2"),), "m/s²": ((1 / FOOT, "ft/s²"),), "m²": ((FOOT**-2, "ft²"),), "m³": ((FOOT**-3, "ft³"),),
       "m³/m": ((FOOT**-2, "ft³/ft"),), "Pa": ((FOOT**2 / POUND, "psf"), (FOOT**2 / POUND / 1e3, "ksf")), "N": ((1 / POUND, "lbf"), (1e-3 / POUND, "kip")),
       "J": ((1 / (POUND * FOOT), "ft·lbf"), (1e-3 / (POUND * FOOT), "ft·kip")), "kg/m3": ((9.80665 * FOOT**3 / POUND, "pcf"),), "N/m3": ((FOOT**3 / POUND, "pcf"),),
       "kg": ((9.80665 / POUND, "lb"),), "t": ((9806.65 / POUND / 1e3, "kip"),), "t/m": ((9806.65 / POUND / 1e3 * FOOT, "kip/ft"),), "kg/m": ((9.80665 / POUND * FOOT, "lb/ft"),)}
 _of_run = {"us": False}
+SI = {"": 1, "Pa": 1, "kPa": 1e3, "MPa": 1e6, "N/m2": 1, "kN/m2": 1e3, "psf": 47.88025898, "ksf": 47880.25898, "psi": 6894.757293, "bar": 1e5,
+      "m": 1, "cm": 0.01, "mm": 1e-3, "ft": 0.3048, "s": 1, "min": 60, "h": 3600, "day": 86400, "d": 86400, "deg": 1, "m/s": 1, "mm/h": 1e-3 / 3600, "mm/day": 1e-3 / 86400}
 
 
 def use(scene):
@@ -60,6 +62,16 @@ class Keys:
         return row
 
 
+def number(value):
+    """A number of a scene in SI. Raises ValueError where it is an expression, or has a unit that is not known here."""
+    if isinstance(value, (int, float)):
+        return float(value)
+    match = re.fullmatch(r"\s*([-+]?[\d.]+(?:[eE][-+]?\d+)?)\s*([A-Za-z/0-9]*)\s*", value) if isinstance(value, str) else None
+    if not match or match[2] not in SI:
+        raise ValueError(value)
+    return float(match[1]) * SI[match[2]]
+
+
 def text_of(value, unit="", over_time=False):
     """A value of a scene in words: 13000 in Pa as '13 kPa', [[0, 12], [150, 0]] of degrees over time as '12° at 0 s, 0° at 150 s'. Texts that
     are quantities stay as they are; expressions get the unit of their values in brackets."""
@@ -71,11 +83,13 @@ def text_of(value, unit="", over_time=False):
         return list_of(value, unit, over_time)
     if not unit or not isinstance(value, str):
         return str(value)
-    number = NUMBER.match(value.strip())
-    rest = value.strip()[number.end():].strip() if number else ""
-    if number and not rest:
+    match = NUMBER.match(value.strip())
+    rest = value.strip()[match.end():].strip() if match else ""
+    if match and not rest:
         return quantity(float(value), unit)
-    return shown(value) if number and UNIT.match(rest) else f"{value} [{shown(unit)}]"
+    if match and _of_run["us"] and unit in US and rest in SI:
+        return quantity(number(value), unit)
+    return shown(value) if match and UNIT.match(rest) else f"{value} [{shown(unit)}]"
 
 
 def list_of(values, unit, over_time):
@@ -89,6 +103,9 @@ def list_of(values, unit, over_time):
         return "; ".join(text_of(one, unit, over_time) for one in values)
     own = any(isinstance(x, str) for one in values for x in one)  # some values carry their unit, so each is written with one
     say = (lambda one: f"{text_of(one[1], unit)} at {text_of(one[0], 's')}") if over_time else (lambda one: f"({', '.join(text_of(x, unit) if own else str(x) for x in one)})")
+    if _of_run["us"] and unit in US and not own and not over_time:
+        factor, unit = readable_unit(max(abs(x) for one in values for x in one), unit)
+        values = [[f"{factor * x:.5g}" for x in one] for one in values]
     few = values if len(values) <= ENTRIES else [values[0], values[-1]]
     text = " to ".join(map(say, few)) + f" in {len(values)} points" if few is not values else ", ".join(map(say, few))
     return text if over_time or own else with_shown(text, unit)

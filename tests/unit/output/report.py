@@ -18,6 +18,7 @@ import numpy as np
 sys.path.insert(0, sys.argv.pop())
 import talus_play  # noqa: E402
 import talus_report  # noqa: E402
+from talus_units import quantity, text_of, use  # noqa: E402
 from talus_loads import value_at  # noqa: E402
 from talus_workbook import write_workbook  # noqa: E402
 from talus_pdf import MISSING, browser, headless, print_report  # noqa: E402
@@ -129,6 +130,17 @@ class Report(unittest.TestCase):
             self.assertEqual(print_report(path).read_bytes()[:4], b"%PDF")
         elif not shutil.which("weasyprint"):
             self.assertRaisesRegex(ValueError, MISSING, print_report, path)
+
+    def test_units_are_those_that_the_scene_asks_for(self):
+        self.assertEqual(quantity(20e3, "Pa"), "20 kPa")
+        use({"output": {"units": "US"}})
+        try:
+            self.assertEqual([quantity(of, unit, ".3g") for of, unit in ((20e3, "Pa"), (1e6, "Pa"), (0.03, "m"), (2000, "kg/m3"), (19.62e3, "N/m3"))],
+                             ["418 psf", "20.9 ksf", "0.0984 ft", "125 pcf", "125 pcf"])
+            self.assertEqual((text_of("7 kPa", "Pa"), text_of("1 m", "m"), text_of([[0, 1], [10, 2]], "m")), ("146.198 psf", "3.28084 ft", "(0, 3.2808), (32.808, 6.5617) ft"))
+        finally:
+            use({})
+        self.assertEqual((text_of("7 kPa", "Pa"), text_of([[0, 1], [10, 2]], "m")), ("7 kPa", "(0, 1), (10, 2) m"))
 
     def test_tables_are_a_workbook(self):
         write_workbook(self.folder / "t.xlsx", {"Numbers": [("what", "value"), ("a < b", 1.5), ("none", float("nan"))]})
