@@ -26,12 +26,19 @@ Action add_plot(CLI::App &app) {
       "--slip-surface", arguments->choice.slip_surface,
       "find the slip surface, the line of largest plastic strain, at the first of the times or at failure, "
       "and print it as [output.line.NAME] takes it");
+  auto *since = command->add_option("--since", arguments->choice.since,
+                                    "stage from whose start displacement counts, without what soil moved under its "
+                                    "own weight before");
+  auto *pdf = command->add_flag("--pdf", arguments->choice.pdf,
+                                "print the report as DIR/report.pdf too, with Chromium or WeasyPrint");
   command
       ->add_flag("--movie", arguments->choice.movie,
                  "draw a film of the fields and nothing else: DIR/pictures/movie_FIELD.gif, and .mp4 where there is an "
                  "ffmpeg; without --fields of plastic strain or, where there is none, of displacement")
       ->excludes(times)
-      ->excludes(slip_surface);
+      ->excludes(slip_surface)
+      ->excludes(pdf)
+      ->excludes(since);
   return [arguments] {
     if (!std::filesystem::is_regular_file(std::filesystem::path(arguments->directory) / "run.h5"))
       throw SceneError(arguments->directory + " contains no results of a run: there is no run.h5");

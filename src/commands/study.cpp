@@ -1,9 +1,14 @@
+#include <toml++/toml.h>
+
 #include <algorithm>
 #include <filesystem>
+#include <map>
+#include <set>
 
 #include "commands/gallery.h"
 #include "commands/study_file.h"
 #include "commands/sweep.h"
+#include "scene/materials.h"
 #include "scene/output_source.h"
 #include "scene/scene.h"
 #include "scene/words.h"
@@ -87,8 +92,27 @@ class Study {
       if (!v.unit.empty() && !v.numeric()) root_.complain(path + ".unit", "belongs to numbers; write units in choices");
       keys.insert(keys.end(), v.key.begin(), v.key.end());
       if (const std::string wrong = same_keys(base_, keys); !wrong.empty()) root_.complain(path + ".key", wrong);
+      for (const std::string &key : v.key) check_material(path, key, v.listed);
       variables_.push_back(v);
     }
+  }
+
+  /// A material gives what a body does not state: a choice of materials has no effect on stated keys.
+  void check_material(const std::string &path, const std::string &key, const std::vector<std::string> &chosen) {
+    if (!key.starts_with("body.") || !key.ends_with(".material")) return;
+    const std::string body = key.substr(0, key.size() - std::string("material").size());
+    const toml::table stated = toml::parse(base_.source);
+    std::map<std::string, std::set<std::string>> values;
+    for (const Material &soil : soils())
+      if (std::ranges::count(chosen, soil.name))
+        for (const MaterialKey &one : soil.keys) values[one.key].insert(one.value);
+    std::string without;
+    for (const auto &[name, different] : values)
+      if (different.size() > 1 && stated.at_path(body + name)) without += (without.empty() ? "" : ", ") + name;
+    if (!without.empty())
+      root_.complain(path + ".key",
+                     "varies " + key + ", and the scene states " + without + " of this body, which has " +
+                         "precedence over every material: take these keys out of the scene, or vary them");
   }
 
   /// The triangle of the correlation matrix of the random variables.
@@ -129,7 +153,8 @@ class Study {
       return names;
     }
     names.insert(names.end(), {"fails", "load_time_of_failure_s", "largest_displacement_m", "travel_distance_m",
-                               "volume_of_slide_m3", "depth_of_slide_m"});
+                               "volume_of_slide_m3", "depth_of_slide_m", "run_out_from_toe_m", "fall_height_m",
+                               "angle_of_reach_deg", "area_m2"});
     for (const auto &point : base_.output->point)
       names.insert(names.end(), {point.name + "_displacement_m", point.name + "_largest_speed_m_s"});
     return names;

@@ -46,6 +46,8 @@ int status_of_pictures(const std::string &dir, const PictureChoice &choice) {
   options.insert(options.end(), choice.times.begin(), choice.times.end());
   if (choice.logarithmic) options.push_back("--log");
   if (choice.slip_surface) options.push_back("--slip-surface");
+  if (!choice.since.empty()) options.insert(options.end(), {"--since", choice.since});
+  if (choice.pdf) options.push_back("--pdf");
   if (choice.movie) options.push_back("--movie");
   try {
     write_strength(dir);

@@ -12,6 +12,8 @@ struct PictureChoice {
   bool logarithmic = false;         ///< scale of plastic strain
   bool slip_surface = false;        ///< finds it, in plane strain
   bool movie = false;               ///< draws a film of the fields and nothing else
+  std::string since = {};           ///< stage from whose start displacement counts
+  bool pdf = false;                 ///< the report as PDF too
 };
 
 /// Draws DIR/pictures/*.png and DIR/report.html, or DIR/pictures/movie_FIELD.gif and .mp4, from the results in `dir`;

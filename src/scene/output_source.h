@@ -33,7 +33,11 @@ struct OutputLine {
   }
 };
 
+enum class Units { si, us };
+
 struct Output {
+  std::string project, author;     ///< on the first screen of the report
+  Units units = Units::si;         ///< of report and pictures
   double interval = 0;             ///< time between snapshots [s]; 0: start and end of stages only
   double history_interval = 0;     ///< [s]; 0: every 200th of the longest stage
   double checkpoint_interval = 0;  ///< [s]; 0: with every snapshot
@@ -43,6 +47,10 @@ struct Output {
       picture;  ///< empty: displacement, plastic strain, velocity and pore pressure, as far as there are
   template <class Visitor>
   void fields(Visitor &&v) {
+    v.text("project", project, "name or number of the project, for the report");
+    v.text("author", author, "who is responsible for the scene, for the report");
+    v.choice("units", units, {{"SI", Units::si}, {"US", Units::us}},
+             "units of report, pictures and tables: SI, or US (ft, psf, ksf, pcf); files of results keep SI");
     v.number("interval", interval, second, Range{0, 1e9},
              "time between snapshots; 0: only at the start and end of stages");
     v.number("history_interval", history_interval, second, Range{0, 1e9},

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -161,6 +162,7 @@ class Model {
     const auto line = [](const OutputLine &one) { return Json{{"name", one.name}, {"points", one.points}}; };
     Json all{
         {"title", scene_.title}, {"dimension", dim}, {"phases", name_of(scene_.phases)}, {"gravity", scene_.gravity}};
+    all["file"] = std::filesystem::path(scene_.file).filename().string();
     all["up"] = scene_.up == Up::y ? "y" : "z";
     all["scene"] = scene_.root ? scene_.root->values() : scene_.source;
     all["keys"] = units();

@@ -14,6 +14,7 @@ from osgeo import gdal, ogr, osr
 import talus_style as style
 from talus_ground import Ground
 from talus_map_pictures import draw_map, draw_section
+from talus_qgis import add_styles, of_grid
 from talus_results import NOT_ENDED, SLOW, Results, Thickness, largest_displacement, still_moving
 from talus_units import words
 from talus_way import Way
@@ -115,8 +116,8 @@ class Grid:
         return result
 
 
-class Maps:
-    """Everything that is mapped, on one grid: thickness and speed are of the soil that slides, the change of thickness is of all soil."""
+class Deposit:
+    """The soil that slid at the end, on a grid: its outline and the numbers that report, study and maps give of it."""
 
     def __init__(self, results, spacing=None, limit=None, beyond=None):
         self.results, self.axes = results, Axes(results)
@@ -139,11 +140,15 @@ class Maps:
                  f"where the soil is thin; less so with --spacing {wider:.4g}{f', a multiple of the spacing of the terrain file,' if terrain else ''} or more")
         self.moving = still_moving(last, self.sliding)
         self.last = last
-        self._accumulate()
+        self._accumulate(self.mapped())
         if not self.covered[-1].any():
             raise ValueError(f"the deposit is nowhere as thick as --limit {self.limit:g} m; its largest thickness is {self.thickness[-1].max():.3g} m"
                              + (f". {self.beside(beyond)}" if self.left_out()[0] > LEFT_OUT * self.volume[-1] else ""))
-        self._elevations(first, last)
+        self._ends(first, last)
+
+    def mapped(self):
+        """The snapshots that are put on the grid."""
+        return self.results.snapshots[-1:]
 
     def _size_of(self, first):
         """Mean size of the particles that slide, or of all where none does [m]: those of a slide may be much smaller than those of the ground below it."""
@@ -187,11 +192,11 @@ class Maps:
         thickness = held / self.grid.spacing**2
         return self.grid.evened_out(thickness, thickness >= self.limit, EVEN * self.size)
 
-    def _accumulate(self):
+    def _accumulate(self, snapshots):
         self.times, self.thickness, self.covered, self.path, self.volume = [], [], [], [], []
         nothing = np.full(self.grid.shape, np.nan)
         self.largest_speed, self.arrival = nothing.copy(), nothing.copy()
-        for snapshot in self.results.snapshots:
+        for snapshot in snapshots:
             moves = np.isin(snapshot.ids(), self.sliding, assume_unique=True)
             place, volume = self.axes.level(snapshot.position())[moves], snapshot.column("volume").values[moves, 0]
             velocity = self.axes.level(snapshot.column("velocity").values)[moves]
@@ -207,27 +212,49 @@ class Maps:
             self.path.append(np.average(place, axis=0, weights=volume) if len(place) else np.full(3, np.nan))
         self.thickness, self.path = np.array(self.thickness), np.array(self.path)
 
-    def _column(self, snapshot):
-        """Thickness of all soil."""
-        volume = snapshot.column("volume").values[:, 0]
-        return self._even(self.grid.spread(self.axes.level(snapshot.position()), np.cbrt(volume), [volume])[0])
-
-    def _elevations(self, first, last):
-        """Surface of the soil and, where there is none, bottom of the mesh, at the start and at all snapshots that the section shows."""
-        self.change = self._column(last) - self._column(first)
-        self.ground = Ground(self.node.min(axis=0), self.node.max(axis=0), self.size, (0, 1), 2, (self.node, self.cells))
-        self.before = self.surface(first)
+    def _ends(self, first, last):
+        """The crown at the start and the toe of the deposit."""
         start = self.axes.level(first.position())[np.isin(first.ids(), self.sliding, assume_unique=True)]
         self.crown = start[start[:, 2].argmax()]
         # the toe is the cell of the deposit that is furthest from the crown; its elevation is that of the lowest particle there
         east, north = (at[self.covered[-1]] for at in np.meshgrid(*self.grid.centres(), indexing="ij"))
         far = np.hypot(east - self.crown[0], north - self.crown[1]).argmax()
         toe = np.array([east[far], north[far], 0.0])
-        self.way = Way.of(self.path[:, :2], start[:, :2], start[:, 2], np.column_stack([east, north]), self.size)  # of the section
         slid = np.isin(last.ids(), self.sliding, assume_unique=True)
         end, size = self.axes.level(last.position())[slid], np.cbrt(last.column("volume").values[slid, 0])
         near = np.abs(end[:, :2] - toe[:2]).max(axis=1) <= 1.000001 * (self.grid.spacing + size) / 2
         self.toe = np.array([*toe[:2], end[near, 2].min()])
+
+    def numbers(self):
+        """Measures of the deposit, by their names with units, as attributes of its outline."""
+        deposit, area = self.thickness[-1], self.covered[-1].sum() * self.grid.spacing**2
+        travel, fall = np.linalg.norm((self.toe - self.crown)[:2]), self.crown[2] - self.toe[2]
+        inside = deposit[self.covered[-1]].sum() * self.grid.spacing**2
+        return {"area_m2": area, "volume_m3": inside, "travel_distance_m": travel, "fall_height_m": fall,
+                "angle_of_reach_deg": np.degrees(np.arctan2(fall, travel)), "mean_thickness_m": inside / area,
+                "largest_thickness_m": deposit.max(), "least_thickness_m": self.limit, "time_s": self.times[-1]}
+
+
+class Maps(Deposit):
+    """Everything that is mapped, on one grid: thickness and speed are of the soil that slides, the change of thickness is of all soil."""
+
+    def __init__(self, results, spacing=None, limit=None, beyond=None):
+        super().__init__(results, spacing, limit, beyond)
+        first, last = results.snapshots[0], results.snapshots[-1]
+        self.change = self._column(last) - self._column(first)
+        self.ground = Ground(self.node.min(axis=0), self.node.max(axis=0), self.size, (0, 1), 2, (self.node, self.cells))
+        self.before = self.surface(first)
+        start = self.axes.level(first.position())[np.isin(first.ids(), self.sliding, assume_unique=True)]
+        east, north = (at[self.covered[-1]] for at in np.meshgrid(*self.grid.centres(), indexing="ij"))
+        self.way = Way.of(self.path[:, :2], start[:, :2], start[:, 2], np.column_stack([east, north]), self.size)  # of the section
+
+    def mapped(self):
+        return self.results.snapshots
+
+    def _column(self, snapshot):
+        """Thickness of all soil."""
+        volume = snapshot.column("volume").values[:, 0]
+        return self._even(self.grid.spread(self.axes.level(snapshot.position()), np.cbrt(volume), [volume])[0])
 
     def surface(self, snapshot):
         """Elevations of the surface on the grid of self.ground."""
@@ -255,15 +282,6 @@ class Maps:
     def rings(self, mask):
         """The same as arrays of places [n, 2]."""
         return [np.array(ring.GetPoints())[:, :2] for polygon in self.polygons(mask) for ring in polygon]
-
-    def numbers(self):
-        """Measures of the deposit, by their names with units, as attributes of its outline."""
-        deposit, area = self.thickness[-1], self.covered[-1].sum() * self.grid.spacing**2
-        run_out, fall = np.linalg.norm((self.toe - self.crown)[:2]), self.crown[2] - self.toe[2]
-        inside = deposit[self.covered[-1]].sum() * self.grid.spacing**2
-        return {"area_m2": area, "volume_m3": inside, "run_out_m": run_out, "fall_height_m": fall,
-                "angle_of_reach_deg": np.degrees(np.arctan2(fall, run_out)), "mean_thickness_m": inside / area,
-                "largest_thickness_m": deposit.max(), "least_thickness_m": self.limit, "time_s": self.times[-1]}
 
     def layers(self):
         """Of each grid: name, values, unit and meaning."""
@@ -318,6 +336,7 @@ def write_rasters(maps, folder, ascii_grids):
     options = ("COMPRESS=DEFLATE",)
     for name, values, unit, meaning in maps.layers():
         made = raster(maps, [(values, meaning, unit)], folder / f"{name}.tif", "GTiff", options)
+        (folder / f"{name}.qml").write_text(of_grid(name, values, unit))
         if ascii_grids:
             gdal.GetDriverByName("AAIGrid").CreateCopy(str(folder / f"{name}.asc"), made, options=["SIGNIFICANT_DIGITS=8"])
         made.FlushCache()
@@ -347,6 +366,7 @@ def write_vectors(maps, path):
             feature.SetField(key, int(value) if isinstance(value, bool) else float(value))
         feature.SetGeometry(geometry)
         layer.CreateFeature(feature)
+    add_styles(made)
     made.FlushCache()
 
 

@@ -4,6 +4,8 @@ Each takes the results of the run (talus_results.Results) and the keys that the 
 in SI units. A page may have measures of its own in a file measures.py beside its numbers.toml, written alike.
 """
 
+import typing
+
 import numpy as np
 
 from talus_results import Thickness, largest_displacement, read_factor, sliding, spacing
@@ -80,6 +82,18 @@ def share_of_loads(results, stage):
 # ---- motion ----
 
 @measure
+def angle_of_reach(results):
+    """Angle whose tangent is the fall over the travel distance of the slide [deg]."""
+    return slide(results).reach()
+
+
+@measure
+def area_of_deposit(results):
+    """Area of the deposit of a run in 3D [m2]."""
+    return slide(results).area
+
+
+@measure
 def displacement(results, point, stage=None):
     """Displacement of a tracked point at the end of the run, or of a stage [m]."""
     history = results.history
@@ -140,24 +154,46 @@ def largest_share_displacement(results, share=0.999):
     return largest_displacement(results.snapshots[-1], share)
 
 
+class Slide(typing.NamedTuple):
+    """The soil that slides at the end (talus_results.sliding). In plane strain the travel distance is the level one from its rear at the start to its front at
+    the end along the mean direction of its motion, in 3D that of the maps, from the crown to the toe of the deposit; `from_toe` is how far the front went
+    beyond where it was at the start, and the fall is from the highest place at the start to the lowest of the front. The area is that of the deposit, in 3D
+    alone. The depth is the largest one of the lower face below the ground, `deepest` its x, both in the undeformed section; they are known to the spacing of
+    particles. Zeros where nothing moved [m, m3 or m3/m, m2]."""
+
+    travel: float = 0.0
+    volume: float = 0.0
+    depth: float = 0.0
+    deepest: float = 0.0
+    from_toe: float = 0.0
+    fall: float = 0.0
+    area: float | None = None
+
+    def reach(self):
+        """The angle of reach, whose tangent is the fall over the travel distance [deg]; None without travel."""
+        return float(np.degrees(np.arctan2(self.fall, self.travel))) if self.travel else None
+
+
 def slide(results):
-    """The soil that slides at the end (talus_results.sliding): its travel distance, which is the level distance from its rear at the start to its front at
-    the end along the mean direction of its motion [m], its volume [m3, or m3/m], the largest depth of its lower face below the ground, and the x of this
-    depth [m], both in the undeformed section. Depth and place are known to the spacing of particles. Zeros where nothing moved. Snapshots without
-    `displacement` or `volume` raise KeyError."""
+    """The Slide of a run. Snapshots without `displacement` or `volume` raise KeyError."""
     last = results.snapshots[-1]
     moved = last.column("displacement").values
     inside = sliding(last)
     if not inside.any():
-        return 0.0, 0.0, 0.0, 0.0
+        return Slide()
     up = results.up_axis()
     level = [axis for axis in range(moved.shape[1]) if axis != up]
     mean = moved[inside][:, level].mean(axis=0)
     along = mean / np.linalg.norm(mean) if np.linalg.norm(mean) > 0 else np.eye(len(level))[0]
     end = last.position()
     start = end - moved
-    travel = (end[inside][:, level] @ along).max() - (start[inside][:, level] @ along).min()
     volume = last.column("volume").values[:, 0]
+    before, after = start[inside][:, level] @ along, end[inside][:, level] @ along
+    travel, from_toe = after.max() - before.min(), after.max() - before.max()
+    front = after >= after.max() - spacing(last)
+    fall, area = start[inside, up].max() - end[inside][front, up].min(), None
+    if mapped := deposit(results):
+        travel, fall, area = mapped["travel_distance_m"], mapped["fall_height_m"], float(mapped["area_m2"])
     column = np.floor(start[:, level] / (volume.mean() ** (1 / moved.shape[1]) * 1.5)).astype(int)
     _, number = np.unique(column, axis=0, return_inverse=True)
     number = number.reshape(-1)
@@ -166,7 +202,18 @@ def slide(results):
     np.minimum.at(base, number[inside], start[inside, up])
     deepest = int(np.argmax(ground - base))
     place = start[number == deepest, level[0]].mean()
-    return float(travel), float(volume[inside].sum()), float(ground[deepest] - base[deepest]), float(place)
+    return Slide(float(travel), float(volume[inside].sum()), float(ground[deepest] - base[deepest]), float(place), float(from_toe), float(fall), area)
+
+
+def deposit(results):
+    """The numbers of the maps of a run in 3D as `talus maps` writes them without options; None in plane strain, and where nothing slid far enough."""
+    if results.snapshots[-1].position().shape[1] != 3 or not len(results.mesh()[1]) or "velocity" not in results.snapshots[-1]:
+        return None
+    from talus_maps import Deposit  # GDAL is loaded where it is needed
+    try:
+        return Deposit(results).numbers()
+    except ValueError:
+        return None
 
 
 def flow(results, states=10):

@@ -15,6 +15,7 @@ from matplotlib.collections import LineCollection, PolyCollection
 from talus_modelled import WATER, Model, notes, outline, stage_rows
 from talus_perspective import Views
 from talus_symbols import SYMBOL, WHITE, Symbols, chains, dimension, keep_apart, label, movable, named_points
+from talus_units import length, use
 
 WIDTH, MARGIN, LINE = 12.0, 0.45, 0.19  # of the picture, its edges and a line of its text [inch]
 
@@ -127,7 +128,8 @@ def section(model):
     sheet = Sheet(model, height + scale - 0.2)
     axes = sheet.axes((WIDTH - width + scale) / 2, sheet.view_top, width, height)
     axes.set(xlim=(low[0] - pad * metres, high[0] + pad * metres), ylim=(low[1] - pad * metres, high[1] + above * metres), aspect="equal",
-             xlabel="x [m]", ylabel="y [m]")
+             xlabel=f"x [{length()[1]}]", ylabel=f"y [{length()[1]}]")
+    style.places(axes.xaxis, 8), style.places(axes.yaxis, 8)
     for body in range(len(model.bodies)):
         cells = model.corners[model.body == body]
         edge = np.linalg.norm(cells[:, 1] - cells[:, 0], axis=1).mean() / metres if len(cells) else 1  # [inch]
@@ -233,7 +235,9 @@ def main():
     parser.add_argument("model", type=pathlib.Path, help="the document of the program (JSON)")
     parser.add_argument("picture", type=pathlib.Path, help="PNG file to write")
     given = parser.parse_args()
-    draw_model(Model(given.model.read_text()), given.picture)
+    model = Model(given.model.read_text())
+    use(model.scene)
+    draw_model(model, given.picture)
 
 
 if __name__ == "__main__":

@@ -47,7 +47,7 @@ class Model:
         self.stages = self.data["stages"]
 
     def colour(self, body):
-        return style.GROUND[body % len(style.GROUND)]
+        return style.soil_colours(self.bodies)[body]
 
     def soil_line(self, name):
         """Law (or material of the library) and parameters of a soil: first those with symbols, then the others."""

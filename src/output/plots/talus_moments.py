@@ -59,6 +59,8 @@ def of_reset(field):
 def resets(results):
     """Time and stage of the last snapshot before each reset of displacement that the run went on after. A reset is at the end of a stage, whose last
     snapshot still has what is then set to 0."""
+    if getattr(results, "counts_since", ""):
+        return [(results.snapshots[0].time, results.snapshots[0].stage)]
     names = {stage.get("name") for stage in results.scene.get("stage", []) if stage.get("reset_displacement")}
     return [(one.time, one.stage) for one, after in zip(results.snapshots, results.snapshots[1:]) if one.stage in names and one.stage != after.stage]
 

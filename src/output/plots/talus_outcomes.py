@@ -12,11 +12,13 @@ import math
 import numpy as np
 
 from talus_measures import failure, largest_share_displacement, particles, slide, steps
+from talus_units import quantity
 
 FAILS, MOVES, STANDS = "fails", "moves", "stands"
 # Of the slope of tests/exactness/results/outcomes.py, in cells of 0.77 m, plastic strain times cell is 0.31 to 0.38 of the displacement in runs that slid by
 # 0.08 to 3.2 m, and 0.10 to 0.13 of it in those that settled by 0.03 and 0.04 m
 SMALL, SLID = 0.1, 0.25
+OF_SLIDE = ("travel_distance_m", "volume_of_slide_m3", "depth_of_slide_m", "run_out_from_toe_m", "fall_height_m", "angle_of_reach_deg", "area_m2", "deepest_at_x_m")
 SHARE = 0.999  # of the soil: single particles count neither for displacement nor for strain
 
 
@@ -54,20 +56,20 @@ def outcome(results, cell=None):
     history = results.history
     for name in history.points(0) if history else {}:
         row[f"{name}_displacement_m"] = finite(history.columns[f"{name}_displacement_m"][-1])  # none where the point has no soil
-    travel, volume, depth, place = slide(results) if state != STANDS else (None, None, None, None)
-    row |= {"travel_distance_m": travel, "volume_of_slide_m3": volume, "depth_of_slide_m": depth, "deepest_at_x_m": place}
+    slid = slide(results) if state != STANDS else None
+    row |= dict(zip(OF_SLIDE, (slid.travel, slid.volume, slid.depth, slid.from_toe, slid.fall, slid.reach(), slid.area, slid.deepest) if slid else (None,) * len(OF_SLIDE)))
     return row | {"steps": int(steps(results)), "particles": int(particles(results)), "cell_m": own}
 
 
 def in_words(row, cell):
     """Why a run has its state, in a few words."""
+    small, cell = row["largest_displacement_m"] <= SMALL * cell, quantity(cell, "m", ".2g")
     if row["state"] == FAILS:
         load = row["load_time_of_failure_s"]
-        return f"soil moved by more than a cell of {cell:.2g} m" if load is None else f"the watched point failed under the loads of t = {load:.3g} s"
+        return f"soil moved by more than a cell of {cell}" if load is None else f"the watched point failed under the loads of t = {load:.3g} s"
     if row["state"] == MOVES:
-        return f"soil slid by less than a cell of {cell:.2g} m: smaller cells show whether it fails"
-    small = row["largest_displacement_m"] <= SMALL * cell
-    return f"no soil moved by more than {100 * SMALL:g} % of a cell of {cell:.2g} m" if small else "soil deformed as a whole, without sliding"
+        return f"soil slid by less than a cell of {cell}: smaller cells show whether it fails"
+    return f"no soil moved by more than {100 * SMALL:g} % of a cell of {cell}" if small else "soil deformed as a whole, without sliding"
 
 
 def losses(rows):

@@ -14,12 +14,15 @@ from talus_histories import draw_histories
 from talus_lines import draw_lines
 from talus_movie import draw_movies
 from talus_paths import draw_stress_paths
+from talus_pdf import print_report
 from talus_report import write_report
 from talus_results import NOT_ENDED, Results
 from talus_sections import draw_sections
 from talus_slip import draw_slip_surface
+from talus_units import use
 
 FIELDS = ("displacement", "thickness", "plastic_strain", "velocity", "pore_pressure", "suction", "saturation", "surface", "mobilised_friction", "state")
+OVER_TIME = ("displacement", "thickness")  # which have a sheet of several times unasked: the report plays the others
 OF_PARTICLES = ("id", "body")  # numbers that are no quantities
 OF_MECHANISM = "shear_strain"  # field that says nothing but of the mechanism of a factor of safety
 OF_PORES = ("pore_pressure", "gas_pressure", "suction", "saturation")
@@ -34,6 +37,8 @@ def arguments():
     parser.add_argument("--log", action="store_true", help="plastic strain on a logarithmic scale")
     parser.add_argument("--slip-surface", action="store_true", help="find the slip surface, at the first of the times or at failure")
     parser.add_argument("--movie", action="store_true", help="a film of the fields instead: of plastic strain or, without any, of displacement")
+    parser.add_argument("--since", metavar="STAGE", help="displacement since the start of this stage, without what soil moved under its own weight before")
+    parser.add_argument("--pdf", action="store_true", help="print the report as DIR/report.pdf too")
     return parser.parse_args()
 
 
@@ -44,6 +49,7 @@ class NoSuchField(ValueError):
 def checked(folder, fields=None):
     """The results in a folder, which have snapshots and the fields. Raises NoSuchField with the nearest one."""
     results = Results(folder)
+    use(results.scene)
     if not results.snapshots:
         raise ValueError(f"{folder} contains no snapshots")
     first = results.snapshots[0]
@@ -67,10 +73,15 @@ def tell_of_times(results, times):
             print(f"talus: --times {time:g}: the run has snapshots from {first:g} to {last:.6g} s; that at {shown:.6g} s is shown", file=sys.stderr)
 
 
-def draw(folder, fields=None, times=None, log=False, slip_surface=False):
+def draw(folder, fields=None, times=None, log=False, slip_surface=False, since=None):
     """Draws everything; without `fields`, those of FIELDS that the run has, of which the state of strength only where strength was lost. Returns
     the report's path."""
     results = checked(folder, fields)
+    if since:
+        try:
+            results = results.since(since)
+        except KeyError as error:
+            raise NoSuchField(f"--since: {error.args[0]}") from error
     tell_of_times(results, times)
     if results.broke_off() == NOT_ENDED:  # a run that broke off has said why
         print(f"talus: the run in {folder} is incomplete: {NOT_ENDED}; the pictures show it up to {results.snapshots[-1].time:.6g} s", file=sys.stderr)
@@ -86,7 +97,8 @@ def draw(folder, fields=None, times=None, log=False, slip_surface=False):
     usual = [field for field in FIELDS if field != "state" or lost_strength(results)]
     whole, results = results, results.before_reduction()
     of_mechanism = [field for field in fields or () if field == OF_MECHANISM and whole is not results]
-    sections = draw_sections(results, [field for field in fields or usual if field not in of_mechanism], times, pictures, log)
+    sections = draw_sections(results, [field for field in fields or usual if field not in of_mechanism], times, pictures, log,
+                             None if fields or times else OVER_TIME)
     if of_mechanism:
         sections += draw_sections(whole.of_reduction(), of_mechanism, times, pictures)
     curves = draw_histories(results, pictures) + draw_stress_paths(results, pictures)
@@ -118,7 +130,9 @@ def main():
         if given.movie:
             film(given.folder, given.fields, given.log)
         else:
-            draw(given.folder, given.fields, given.times, given.log, given.slip_surface)
+            report = draw(given.folder, given.fields, given.times, given.log, given.slip_surface, given.since)
+            if given.pdf:
+                print_report(report)
     except NoSuchField as error:
         print(f"talus: {error}", file=sys.stderr)
         return 2

@@ -1,6 +1,8 @@
 """report.html: one page that stands alone, with the pictures inside it."""
 
 import base64
+import csv
+import datetime
 import html
 import pathlib
 
@@ -8,15 +10,19 @@ import numpy as np
 
 from talus_factor import about_water, factor_lines, lost_stages, short
 from talus_histories import base_friction
+from talus_loads import loads_at
 from talus_measures import flow, known
 from talus_model import draw_model
 from talus_modelled import read_model, stage_rows
 from talus_moments import moved_before
 from talus_outcomes import in_words, outcome
+from talus_play import ROWS, scripts
 from talus_results import NOT_ENDED, SLOW, largest_displacement, read_factor, sliding, still_moving
 from talus_units import Keys, at_time, capital, readable_unit, text_of, words
+from talus_workbook import write_workbook
 
 LOG_LINES = 25
+LEDGERS = ("Particles", "Mass ledger", "Largest plastic strain")  # besides those of the bases
 WATER_KEYS = ("porosity", "saturation", "pore_pressure_ratio", "water_table", "permeability", "hydraulic_conductivity", "gas_permeability", "permeability_change",
               "retention", "relative_permeability")  # of soils
 WATER_MODES = {"drained": "pore pressure is prescribed", "saturated": "pore water moves", "unsaturated": "pore water moves, gas at rest",
@@ -43,32 +49,67 @@ def write_report(results, sections, histories, factor=()):
     the strength is reduced where a factor of safety was asked for."""
     css = (pathlib.Path(__file__).parent / "report.css").read_text()
     model = read_model(results.folder)
+    found = key_results(results, model)
     parts = [
-        header(results),
-        cards(key_results(results)),
+        header(results, model),
+        f'<div class="first">{cards([one for one in found if not of_ledgers(one)])}{first_picture(sections)}</div>',
         warnings(results),
-        section("Model", model_block(results, model)),
         section("Factor of safety", factor_block(read_factor(results), factor)),
-        summary(results, model),
         section("Sections", "".join(field_block(*one) for one in sections)),
-        section("Histories", grid(histories)),
+        section("Histories", grid(histories), "curves"),
+        section("Model", model_block(results, model)),
+        summary(results, model),
+        section("Ledgers and counts", cards([one for one in found if of_ledgers(one)])),
         folded("Scene as run", results.scene_text),
-        folded("Last lines of the log", "\n".join(results.log_lines()[-LOG_LINES:]), is_open=True),
+        folded("Last lines of the log", "\n".join(results.log_lines()[-LOG_LINES:])),
+        scripts(results),
     ]
     page = PAGE.format(title=html.escape(results.title), css=css, body="".join(parts), foot=html.escape(results.program))
     path = results.folder / "report.html"
     path.write_text(page)
+    write_tables(results, model, found)
     return path
 
 
-def header(results):
-    last = results.snapshots[-1]
-    facts = [results.scene.get("phases", "dry"), f"{results.snapshots[0].position().shape[1]}D", results.program,
-             f"{thousands(last.step)} steps to {at_time(last.time, last.time)}"]
+def write_tables(results, model, numbers):
+    """report.csv with the numbers of the report, and report.xlsx with these, the stages, soils and boundaries, and the history in its SI units."""
+    rows = [("quantity", "value", "note"), *numbers]
+    with open(results.folder / "report.csv", "w", newline="") as file:
+        csv.writer(file, lineterminator="\n").writerows(rows)
+    tables, keys = {"Numbers": rows}, model.keys if model else Keys()
+    if model:
+        tables["Stages"] = stage_rows(model)
+    for name, path, kind in (("Soils", "body", "law"), ("Boundaries", "boundary", "kind")):
+        given = {one: keys.row(f"{path}.NAME", values, kind) for one, values in results.scene.get(path, {}).items()}
+        columns = list(dict.fromkeys(key for row in given.values() for key in row))
+        tables[name] = [("name", *columns), *((one, *(row.get(key, "") for key in columns)) for one, row in given.items())]
+    if history := results.history:
+        kept = slice(None, None, -(-len(history.time) // ROWS))
+        tables["History"] = [("time_s", "stage", *history.names()), *zip(history.time[kept].tolist(), history.stage[kept], *(values[kept].tolist() for values in history.columns.values()))]
+    write_workbook(results.folder / "report.xlsx", tables)
+
+
+def header(results, model):
+    """What was asked: project, author, date, file and version, and what kind of a run it is."""
+    last, output = results.snapshots[-1], results.scene.get("output", {})
+    run = results.folder / "run.h5"
+    date = f"{datetime.date.fromtimestamp(run.stat().st_mtime):%d %B %Y}".lstrip("0") if run.exists() else ""
+    asked = [output.get("project"), output.get("author"), date, model and model.data.get("file"), results.program]
+    facts = [results.scene.get("phases", "dry"), f"{results.snapshots[0].position().shape[1]}D", f"{at_time(last.time, last.time)} at the end"]
     cause = results.broke_off()
     ending = f'<p class="ending"><strong>The run {"is incomplete" if cause == NOT_ENDED else "broke off"}:</strong> {html.escape(cause)}</p>' if cause else ""
-    return (f'<header><p class="kicker">Talus · report of a run</p><h1>{html.escape(results.title)}</h1>'
-            f"<p>{' · '.join(html.escape(str(fact)) for fact in facts)}</p>{ending}</header>\n")
+    said = ["".join(f"<span>{html.escape(str(one))}</span>" for one in line if one) for line in (asked, facts)]
+    return (f'<header><p class="kicker">{said[0]}</p><h1>{html.escape(results.title)}</h1><p>{said[1]}</p>{ending}</header>\n')
+
+
+def first_picture(sections):
+    """The slide, which the scripts play; without them its first field."""
+    return f'<div class="field" id="slide">{picture(sections[0][1], capital(words(sections[0][0])))}</div>' if sections else ""
+
+
+def of_ledgers(card):
+    """Is this a number of how the run was computed, which no one asked for first?"""
+    return card[0] in LEDGERS or card[0].startswith("Friction on ")
 
 
 def warnings(results):
@@ -76,15 +117,27 @@ def warnings(results):
     found = dict.fromkeys(event["text"] for event in results.events() if event["warning"])
     if cut := results.cut_history():
         found[cut] = None
-    return section("Warnings", "".join(f"<p>{html.escape(sentence)}</p>" for sentence in found))
+    return section("Warnings", "".join(f"<p>{html.escape(sentence)}</p>" for sentence in found), "warnings")
 
 
-def key_results(results):
-    """[(what, number, note)] that a reader wants first."""
+def load_at_failure(results, model):
+    """[(what, value, note)] of each load that changes with time when the watched point failed."""
+    failures = results.events("failure")
+    if not failures:
+        return []
+    time = failures[0]["load_time_s"]
+    when = f"the watched point failed under the loads of t = {time:.4g} s"
+    found = loads_at(results, model, time) if model else []
+    return [(f"At failure: {what}", value, when) for what, value in found] or [("Failure", f"t = {time:.4g} s", when)]
+
+
+def key_results(results, model=None):
+    """[(what, number, note)], what a reader wants first at the beginning."""
     last = results.snapshots[-1]
     factor = read_factor(results)
     found = doubts(results) + ([] if factor is None else [(f"Factor of safety{about_water(factor).rstrip(':')}", short(factor["factor_of_safety"]), ends_of(factor["factor_of_safety"]) + bounds(factor))])
     lost = (factor or {}).get("stages_without_equilibrium", ())
+    found += load_at_failure(results, model)
     found.append(("Particles", thousands(len(last.position())), ", ".join(results.bodies)))
     when = "at the end" if factor is None else "before the strength is reduced"
     without = ", without the soil that left the mesh" if results.escaped and len(results.escaped.time) else ""
@@ -100,16 +153,18 @@ def key_results(results):
             else:
                 found.append((f"State {when}", came_to["state"], in_words(came_to, came_to["cell_m"]) + motion_at_end(last)))
             volume = came_to["volume_of_slide_m3"]
-            note = "no soil slides" if volume is None else f"moved more than a tenth of the largest; {quantity(came_to['travel_distance_m'], 'm')} from rear to front"
+            note = "no soil slides" if volume is None else "moved more than a tenth of the largest"
             found.append(("Sliding volume", quantity(volume or 0.0, results.per_metre("m³")), note + without))
+            if came_to.get("travel_distance_m"):
+                found += run_out(came_to)
     depth = flow(results) if "displacement" in last and "volume" in last else None
     if depth:
         typical, most, cell = depth
         thin = ": a flow that is not as deep as a cell is not resolved; take smaller cells on its way" if typical < cell else ""
-        found.append(("Depth of the flow", f"{quantity(typical, 'm')}, {quantity(most, 'm')} at most", f"median where it left its outline at the start; cells there measure {quantity(cell, 'm')}{thin}"))
+        found.append(("Depth of the flow", quantity(typical, "m"), f"at most {quantity(most, 'm')}; median where it left its outline at the start; cells there measure {quantity(cell, 'm')}{thin}"))
     speed = top_speed(results)
     if speed:
-        found.append(("Largest velocity", quantity(speed[0], "m/s"), f"{speed[2]}, {at_time(speed[1], last.time)}"))
+        found.append(("Largest speed", quantity(speed[0], "m/s"), f"{speed[2]}, {at_time(speed[1], last.time)}"))
     found += bases(results)
     if "plastic_strain" in last and np.isfinite(last.scalar("plastic_strain")[0]).any():  # elastic soil has none
         found.append(("Largest plastic strain", f"{known(last, 'plastic_strain').max():.3g}", when))
@@ -123,6 +178,14 @@ def key_results(results):
         share = "" if closed else f"; {abs(lost) / mass[0]:.1e} of the mass at the start has {'appeared' if lost > 0 else 'vanished'}"
         found.append(("Mass ledger", "closed" if closed else error, f"{end} at the end{share}"))
     return found
+
+
+def run_out(came_to):
+    """[(what, number, note)] of how far a slide went."""
+    found = [("Travel distance L", quantity(came_to["travel_distance_m"], "m"), "level, from the crown at the start to the front at the end"),
+             ("Run-out from the toe", quantity(came_to["run_out_from_toe_m"], "m"), "front at the end beyond that at the start"),
+             ("Angle of reach", f"{came_to['angle_of_reach_deg']:.1f}°", f"H/L = {came_to['fall_height_m'] / came_to['travel_distance_m']:.3g}, fall H = {quantity(came_to['fall_height_m'], 'm')}")]
+    return found + ([("Area of the deposit", quantity(came_to["area_m2"], "m²"), "as maps outline it")] if came_to["area_m2"] else [])
 
 
 def doubts(results):
@@ -164,7 +227,7 @@ def bounds(factor):
 def motion_at_end(last):
     """Whether the soil that slid has come to rest, in words; empty if it has."""
     moving = still_moving(last, last.ids()[sliding(last)])
-    return f"; still moving: {100 * moving[0]:.3g} % of what slid is faster than {SLOW:g} m/s, at up to {quantity(moving[1], 'm/s')}" if moving else ""
+    return f"; still moving: {100 * moving[0]:.3g} % of what slid is faster than {quantity(SLOW, 'm/s')}, at up to {quantity(moving[1], 'm/s')}" if moving else ""
 
 
 def bases(results):
@@ -303,13 +366,13 @@ def lined_table(name, rows):
     return f"<div><h3>{name}</h3><table><tr>{head}</tr>{''.join(f'<tr>{row}</tr>' for row in rest)}</table></div>"
 
 
-def section(name, content):
-    return f"<section><h2>{name}</h2>{content}</section>\n" if content else ""
+def section(name, content, own=""):
+    return f"<section{f' id={chr(34)}{own}{chr(34)}' if own else ''}><h2>{name}</h2>{content}</section>\n" if content else ""
 
 
 def field_block(field, large, over_time):
     name = capital(words(field))
-    return f'<div class="field">{picture(large, name)}{picture(over_time, f"{name} over time")}</div>'
+    return f'<div class="field">{picture(large, name)}{picture(over_time, f"{name} over time") if over_time else ""}</div>'
 
 
 def factor_block(factor, pictures):
@@ -329,7 +392,7 @@ def picture(path, caption):
     return f'<figure><img alt="{html.escape(caption)}" src="data:image/png;base64,{data}"></figure>'
 
 
-def folded(name, text, is_open=False):
+def folded(name, text):
     if not text:
         return ""
-    return f"<details{' open' if is_open else ''}><summary>{name}</summary><pre>{html.escape(text)}</pre></details>\n"
+    return f"<details><summary>{name}</summary><pre>{html.escape(text)}</pre></details>\n"

@@ -51,6 +51,7 @@ class Snapshot:
 
     def __init__(self, group, derived):
         self._group, self._derived = group, derived
+        self._before = None  # (numbers of particles, their displacement) at the state from which displacement counts
         self.time = float(group.attrs["time"])
         self.step = int(group.attrs["step"])
         self.stage = group.attrs["stage"] or "start"
@@ -66,7 +67,18 @@ class Snapshot:
         """A field as the file has it. Raises KeyError with the nearest names if there is none of this name."""
         if name not in self._group:
             raise unknown("field", name, self.names())
-        return Column(self._group[name])
+        column = Column(self._group[name])
+        if name == "displacement" and self._before:
+            have, moved = self._before
+            row = np.minimum(np.searchsorted(have, self.ids()), len(have) - 1)
+            column.values = column.values - np.where((have[row] == self.ids())[:, None], moved[row], 0.0)
+        return column
+
+    def counted_from(self, before):
+        """The same, with the displacement since another snapshot."""
+        other = copy.copy(self)
+        other._before = before.ids(), before.column("displacement").values
+        return other
 
     def values(self, name):
         """Values of a field: [particles] of a number, [particles, components] of a vector or tensor, of which `stress_xy` is one component
@@ -445,6 +457,8 @@ class Results:
     (None where none was written), `escaped` (likewise). A run that goes on or broke off has what it wrote until now. Raises FileNotFoundError where the
     folder holds no results, OSError where they cannot be read."""
 
+    counts_since = ""  # stage from whose start displacement counts, where one was asked for
+
     def __init__(self, folder):
         self.folder = pathlib.Path(folder)
         if not (self.folder / "run.h5").exists():
@@ -474,11 +488,17 @@ class Results:
         self.snapshots = self._snapshots(self._file["snapshots"].values())
 
     def _snapshots(self, groups):
+        snapshots = [Snapshot(group, {}) for group in groups]
+        self._derive(snapshots)
+        return snapshots
+
+    def _derive(self, snapshots):
+        """Gives snapshots the fields that follow from the last of them."""
         derived = {}
-        snapshots = [Snapshot(group, derived) for group in groups]
+        for snapshot in snapshots:
+            snapshot._derived = derived
         if snapshots and snapshots[0].position().shape[1] == 3 and all(name in snapshots[-1] for name in ("displacement", "volume")):
             derived["thickness"] = Thickness(snapshots[-1], self.up_axis())
-        return snapshots
 
     def of_reduction(self):
         """The same with the start and the mechanism alone."""
@@ -496,6 +516,23 @@ class Results:
         other.snapshots = self._snapshots(kept)
         other.history = self.history.without(MECHANISM) if self.history else None
         other._without = MECHANISM
+        return other
+
+    def since(self, stage):
+        """The same from the start of a stage on, with displacement since then: without what soil moved under its own weight before. Raises KeyError for a
+        stage that the run has not."""
+        number = next((k for k, snapshot in enumerate(self.snapshots) if snapshot.stage == stage), None)
+        if number is None:
+            raise unknown("stage", stage, dict.fromkeys(snapshot.stage for snapshot in self.snapshots[1:]))
+        other, first = copy.copy(self), self.snapshots[max(0, number - 1)]
+        other.snapshots = [snapshot.counted_from(first) for snapshot in self.snapshots[max(0, number - 1):]]
+        other._derive(other.snapshots)
+        if self.history:
+            other.history = self.history.rows(np.flatnonzero(self.history.time >= first.time * (1 - 1e-9)))
+            for point in other.history.points(first.time):
+                way = other.history.way(point)
+                other.history.columns[f"{point}_displacement_m"] = np.linalg.norm(way - way[0], axis=1)
+        other.counts_since = stage
         return other
 
     def snapshot_at(self, time):

@@ -58,7 +58,7 @@ class Painter:
         self._tiles, self._surfaces = {}, {}
         # a section alone shows soils in the colours of the model; views in space shade all soil alike
         self.flat = len(self.views) == 1
-        self.tints = tints(len(results.bodies)) if self.flat else None
+        self.tints = tints(results.bodies) if self.flat else None
         self.marked_escaped, self.drawn_outline = 0, False
         self.slips = []  # (name, points [n, 2], style of the line) of slip surfaces, which pictures of one time show in a section alone
         self.reset, self.since = "", {}  # stage at whose end the field was last set to 0; {step: what it counts from}, where that differs
@@ -243,7 +243,7 @@ class Painter:
         metres = (high[0] - low[0]) / inches  # in an inch
         frame = Frame(low, high, int(inches * self.resolution))
         image = self._image(snapshot, field, k, colours, frame)
-        axes.imshow(image, extent=frame.extent(), origin="lower", aspect="auto")
+        axes.imshow(image, extent=frame.extent(), origin="lower", aspect="auto", interpolation="nearest")
         for line in self.outlines[k]:
             if not isinstance(view, MapView):
                 line = moved_away(line, self._tiled(snapshot, k, frame) >= 0, frame, MOVED * self.spacing)
@@ -274,8 +274,8 @@ class Painter:
         elif view.plane:
             self._bottom(axes, view)
         tall = inches * (high[1] - low[1]) / (high[0] - low[0])
-        axes.xaxis.set_major_locator(MaxNLocator(max(3, int(inches / 0.6)), steps=[1, 2, 5, 10]))
-        axes.yaxis.set_major_locator(MaxNLocator(max(2, int(tall / 0.4)), steps=[1, 2, 5, 10]))
+        style.places(axes.xaxis, max(3, int(inches / 0.6)))
+        style.places(axes.yaxis, max(2, int(tall / 0.4)))
 
     def _mirror_as_needed(self, axes, view):
         """A view from above is not one from below: the second axis runs downward where the two and the upward axis are left-handed."""
@@ -363,8 +363,7 @@ class Painter:
         written = figure.text(LEFT / WIDTH, 1 - 0.24 / height, headline, fontsize=13, fontweight="bold", va="center")
         beside = ", ".join(filter(None, (since, colours.nothing)))
         if beside:
-            figure.draw_without_rendering()
-            figure.text(written.get_window_extent().x1 / figure.bbox.width + 0.15 / WIDTH, 1 - 0.24 / height, beside, fontsize=10, va="center")
+            figure.text(written.get_window_extent(figure.canvas.get_renderer()).x1 / figure.bbox.width + 0.15 / WIDTH, 1 - 0.24 / height, beside, fontsize=10, va="center")
         right = 1 - 0.25 / WIDTH
         figure.text(right, 1 - 0.24 / height, self.results.title, fontsize=9, color=style.SOFT, va="center", ha="right")
         legend = [colours.in_words("in the colour of its soil" if self.flat else "grey")]
@@ -411,9 +410,9 @@ def slip_surfaces(results, folder):
     return found
 
 
-def draw_sections(results, fields, times, folder, log=False):
-    """FIELD_large.png and FIELD.png of each field that the run has; plastic strain on a logarithmic scale if `log`. The program chooses snapshots without
-    `times`. Returns [(field, path of the large one, path of the sheet over time)]."""
+def draw_sections(results, fields, times, folder, log=False, over_time=None):
+    """FIELD_large.png of each field that the run has, and FIELD.png of those `over_time`, or of all; plastic strain on a logarithmic scale if `log`. The
+    program chooses snapshots without `times`. Returns [(field, path of the large one, path of the sheet over time or None)]."""
     if not len(results.snapshots[0].position()):
         return []
     chosen = chosen_snapshots(results, times)
@@ -422,16 +421,17 @@ def draw_sections(results, fields, times, folder, log=False):
     painter.slips = slip_surfaces(results, folder)
     fields = [field for field in fields if not any(snapshot.scalar(field) is None for snapshot in chosen)
               and any(np.isfinite(snapshot.scalar(field)[0]).any() for snapshot in chosen)]  # nowhere: such as the mobilised friction of soil without friction
-    paths = {field: (folder / f"{field}_large.png", folder / f"{field}.png") for field in fields}
+    paths = {field: (folder / f"{field}_large.png", folder / f"{field}.png" if over_time is None or field in over_time else None) for field in fields}
 
     def draw(field):
         snapshots, painter.reset = (chosen, "") if times else since_reset(results, with_stress(results, chosen, field), field)
         if times:
             painter.count_from(field, snapshots)
         colours = painter.colours(field, snapshots, log)
-        large, over_time = paths[field]
+        large, sheet = paths[field]
         painter.large(field, colours, scaled_by(results, snapshots, field), large)
-        painter.over_time(field, colours, snapshots, over_time)
+        if sheet:
+            painter.over_time(field, colours, snapshots, sheet)
 
     on_two_cores(draw, fields)
     return [(field, *paths[field]) for field in fields]

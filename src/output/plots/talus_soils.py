@@ -11,9 +11,9 @@ LINE = 0.6  # how dark the line between two soils is
 SHORTEST = 4  # pieces of an outline that are seen, over the reach within which it counts as the present edge
 
 
-def tints(count):
-    """Colours of so many soils [count, 3], as in the picture of the model."""
-    return np.array([to_rgb(style.GROUND[k % len(style.GROUND)]) for k in range(count)])
+def tints(names):
+    """Colours of these soils [soils, 3], as in the picture of the model."""
+    return np.array([to_rgb(colour) for colour in style.soil_colours(names)])
 
 
 def without_islands(plain, reach):

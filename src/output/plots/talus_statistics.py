@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 ORDERS = (0.5, 3.0)  # of convergence: errors of cells and steps have 1 or 2; beyond 3 two values are near by chance
+NEAR = 0.1  # of what is allowed: a last change that is smaller is none, whatever the order
 
 
 def solved(function, target, low=0.0, high=1.0):
@@ -72,6 +73,7 @@ def settles(sizes, values, within, least=0.0):
     "equal": all values differ by no more than what is allowed.
     "settles": the values go one way to a limit, and every three of them as if their error was a power of the size between the ORDERS; neither the last change
     nor the rest up to that limit is more than what is allowed.
+    "near": the values go one way, the last change is at most NEAR of what is allowed and the one before at most twice it: too fast for an order, and small.
     "swings": the values go to and fro.
     "open": all else."""
     if None in values:
@@ -82,4 +84,6 @@ def settles(sizes, values, within, least=0.0):
     if min(changes) < 0 < max(changes):
         return "swings"
     orders = [order_of(sizes[k:k + 3], values[k:k + 3], ORDERS) for k in range(len(values) - 2)]
-    return "settles" if None not in orders and max(abs(changes[-1]), abs(rest_of(sizes, values, orders[-1]))) <= allowed else "open"
+    if None not in orders and max(abs(changes[-1]), abs(rest_of(sizes, values, orders[-1]))) <= allowed:
+        return "settles"
+    return "near" if abs(changes[-1]) <= NEAR * allowed and abs(changes[-2]) <= 2 * allowed else "open"

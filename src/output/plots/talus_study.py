@@ -29,14 +29,15 @@ from talus_statistics import ORDERS, clopper_pearson, extrapolate, order_of, res
 from talus_style import plt
 from talus_table import folded, lines_of
 from talus_units import readable_unit, shown, with_unit, words
+from talus_workbook import write_workbook
 
 SHOWN = ("factor_of_safety", "load_time_of_failure_s", "travel_distance_m", "largest_displacement_m")  # of a study
 OF_SLIDE = ("travel_distance_m", "volume_of_slide_m3", "depth_of_slide_m")  # 0 where the slope stands
 TO_A_CELL = ("travel_distance_m", "depth_of_slide_m")  # rear, front and slip surface are known to a cell
 OF_POINTS = ("_displacement_m", "_largest_speed_m_s")  # endings
 MOST = 5  # named points that charts and the table show
-LEFT_OUT = ("cell_m", "deepest_at_x_m", "value", "processor_s", "wall_s", "escaped_mass_kg", "escaped_share")  # numbers that are no outcomes
-UNIT = re.compile("_(kg_m_s|m_s2|m3_s|m_s|m3|m|J|Pa|N|kg|K|s|deg)$")  # by which names of outcomes end
+LEFT_OUT = ("cell_m", "deepest_at_x_m", "run_out_from_toe_m", "fall_height_m", "angle_of_reach_deg", "area_m2", "value", "processor_s", "wall_s", "escaped_mass_kg", "escaped_share")  # numbers that are no outcomes
+UNIT = re.compile("_(kg_m_s|m_s2|m3_s|m_s|m3|m2|m|J|Pa|N|kg|K|s|deg)$")  # by which names of outcomes end
 MET, NOT_MET, UNKNOWN = 1, 0, -1
 MANY = 6  # cases: more have no pictures of their fits
 # marker, how it is filled, and what it says
@@ -263,7 +264,7 @@ def said_of_probability(p):
 
 def sensitivities(rows, variables, outcome):
     """Effect of each numeric variable on an outcome from a linear fit in all of them: change of the outcome from the 10 % to the 90 % quantile of
-    the variable, the others at their means. Means and quantiles are those of the runs with this outcome; too few of them have no bars."""
+    the variable, or from the least to the largest of the values that were chosen for it, the others at their means. Means and quantiles are those of the runs with this outcome; too few of them have no bars."""
     known = [row for row in rows if row.get(outcome) is not None]
     y = np.array([float(row[outcome]) for row in known])
     fit = {"outcome": outcome, "runs": len(known), "mean": float(y.mean()) if len(y) else None, "r2": None, "bars": []}
@@ -273,9 +274,9 @@ def sensitivities(rows, variables, outcome):
     x = np.array([[float(row[v["name"]]) for v in varies] for row in known])
     middle, spread = x.mean(0), x.std(0)
     factors, *_ = np.linalg.lstsq((x - middle) / spread, y - y.mean(), rcond=None)
-    quantiles = np.quantile(x, [0.1, 0.9], axis=0)  # of the runs with this outcome, not of the distribution
-    low, high = y.mean() + factors * (quantiles - middle) / spread
-    bars = [{"variable": v["name"], "unit": v["unit"], "quantiles": quantiles[:, k].tolist(), "low": float(low[k]), "high": float(high[k])} for k, v in enumerate(varies)]
+    ends = np.column_stack([np.quantile(of, [0.1, 0.9]) if v["random"] else (of.min(), of.max()) for v, of in zip(varies, x.T)])  # of the runs with this outcome
+    low, high = y.mean() + factors * (ends - middle) / spread
+    bars = [{"variable": v["name"], "unit": v["unit"], "quantiles" if v["random"] else "ends": ends[:, k].tolist(), "low": float(low[k]), "high": float(high[k])} for k, v in enumerate(varies)]
     bars.sort(key=lambda bar: abs(bar["high"] - bar["low"]))
     return fit | {"r2": float(1 - np.var(y - y.mean() - (x - middle) / spread @ factors) / np.var(y)), "bars": bars}
 
@@ -289,11 +290,13 @@ def tornado(fits, in_plane):
         if axes is not drawn[0]:
             axes.sharex(drawn[0])
         for k, bar in enumerate(fit["bars"]):
-            for end, colour, label in (("low", style.LINES[0], "variable at the 10 % quantile of these runs"), ("high", style.LINES[1], "at their 90 % quantile")):
+            labels = ("variable at the 10 % quantile of these runs", "at their 90 % quantile") if "quantiles" in bar else ("variable at its least value", "at its largest value")
+            for end, colour, label in zip(("low", "high"), style.LINES, labels):
                 axes.barh(k, bar[end] - fit["mean"], left=fit["mean"], height=0.62, color=colour, label=label)
         if fit["mean"] is not None:
             axes.axvline(fit["mean"], color=style.INK, lw=0.8)
-        axes.set_yticks(range(len(fit["bars"])), [f"{words(bar['variable'])}\n{bar['quantiles'][0]:.3g} to {bar['quantiles'][1]:.3g} {bar['unit']}".rstrip() for bar in fit["bars"]])
+        ends = [bar.get("quantiles") or bar["ends"] for bar in fit["bars"]]
+        axes.set_yticks(range(len(ends)), [f"{words(bar['variable'])}\n{low:.3g} to {high:.3g} {bar['unit']}".rstrip() for bar, (low, high) in zip(fit["bars"], ends)])
         axes.set_xlabel(textwrap.fill(named(fit["outcome"], in_plane), 52))
         said = f"linear fit to {fit['runs']} runs, R² = {fit['r2']:.2f}" if fit["bars"] else f"no fit to {fit['runs']} runs"
         axes.set_title("\n".join(filter(None, (textwrap.fill(fit["case"], 44), said))), loc="right", fontsize=8)
@@ -373,7 +376,7 @@ def charted(rows, in_plane=False):
         of = found.setdefault(named(ending[1:] or column, in_plane), {})
         if len(of) < MOST:
             of[words(column.removesuffix(ending)) if ending else ""] = column
-    return found
+    return {f"{next(iter(of))} {title}".strip() if len(of) == 1 else title: of for title, of in found.items()}
 
 
 def outcomes(runs, _):
@@ -447,6 +450,7 @@ def errors(runs, design):
 THINGS = {"cells": "cell size", "steps": "time step", "particles": "number of particles per cell"}
 VERDICTS = {"missing": "the {thing} decides it", "equal": "the {thing} does not decide it within {allowed}", "swings": "it swings, and the {thing} decides it",
             "settles": "it settles, to {limit} by extrapolation at the order {order}, and the last refinement changes it by {last}, within {allowed}",
+            "near": "the last refinement changes it by {last}, a tenth or less of {allowed}, and the {thing} does not decide it",
             "open": "it does not settle, and the {thing} decides it"}
 
 
@@ -460,7 +464,7 @@ def percent(difference, values):
     return f"{share:.2g} %" if share >= 0.01 else "0 %"
 
 
-def said_of_quantity(one, rows, thing, within, in_plane):
+def said_of_quantity(one, rows, thing, in_plane):
     """A sentence on what refinement does to a quantity."""
     name, _, unit = named(one["quantity"], in_plane).partition(" [")
     values = [value for value in one["values"] if value is not None]
@@ -468,8 +472,10 @@ def said_of_quantity(one, rows, thing, within, in_plane):
     text = f"The {name} is {factor * min(values):.3g} to {factor * max(values):.3g} {unit}, {percent(max(values) - min(values), values)} apart"
     if one["state"] == "missing":
         text += f" and missing with {', '.join(refined(row) for row, value in zip(rows, one['values']) if value is None)}"
-    numbers = {"limit": f"{factor * one['limit']:.3g} {unit}", "order": f"{one['order']:.2g}", "last": percent(abs(values[-1] - values[-2]), values)} if one["order"] else {}
-    return f"{text}: {VERDICTS[one['state']].format(thing=thing, allowed=f'{100 * within:g} %' + ' or one cell' * (one['quantity'] in TO_A_CELL), **numbers)}."
+    numbers = {"last": percent(abs(values[-1] - values[-2]), values)} if len(values) > 1 else {}
+    if one["order"]:
+        numbers |= {"limit": f"{factor * one['limit']:.3g} {unit}", "order": f"{one['order']:.2g}"}
+    return f"{text}: {VERDICTS[one['state']].format(thing=thing, allowed=one['allowed'], **numbers)}."
 
 
 def judge(rows, by, within, in_plane=False):
@@ -491,9 +497,10 @@ def judge(rows, by, within, in_plane=False):
         if any(value is not None for value in values):
             verdict = settles(sizes, values, within, cell if key in TO_A_CELL else 0.0)
             order = order_of(sizes[-3:], values[-3:], ORDERS) if verdict == "settles" else None
-            judged.append({"quantity": key, "values": values, "state": verdict, "order": order, "limit": order and values[-1] + rest_of(sizes, values, order)})
-            sentences.append(said_of_quantity(judged[-1], rows, thing, within, in_plane))
-            decides |= verdict not in ("equal", "settles")
+            of_cell = key in TO_A_CELL and cell > within * abs(values[-1] or 0)
+            judged.append({"quantity": key, "values": values, "state": verdict, "allowed": f"one cell of {cell:.2g} m" if of_cell else f"{100 * within:g} %", "order": order, "limit": order and values[-1] + rest_of(sizes, values, order)})
+            sentences.append(said_of_quantity(judged[-1], rows, thing, in_plane))
+            decides |= verdict not in ("equal", "settles", "near")
     return sentences + [f"Until another {thing} no longer changes these numbers, their scatter is their error."] * decides, decides, judged
 
 
@@ -526,6 +533,7 @@ def main():
         writer = csv.DictWriter(file, names, lineterminator="\n")
         writer.writeheader()
         writer.writerows({name: written(value) for name, value in row.items()} for row in rows)
+    write_workbook(given.folder / "study.xlsx", {"Runs": [[*names], *([row.get(name) for name in names] for row in rows)]})
     write_json(given.folder / "study.json", {"title": runs.title, "runs": len(rows), "planned": design["planned"], "broke_off": broke_off, "warnings": runs.warnings()} | page)
     print("\n".join([*lines, *map(folded, told)]), flush=True)
     for name in ("tornado", "scatter", "exceedance", "outcomes", "errors"):

@@ -4,6 +4,7 @@ import io
 import os
 import pathlib
 import re
+import zlib
 
 import matplotlib
 
@@ -11,14 +12,16 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.colors import LinearSegmentedColormap, ListedColormap
-from matplotlib.ticker import FuncFormatter, Locator, NullFormatter
+from matplotlib.ticker import FuncFormatter, Locator, MaxNLocator, NullFormatter
 from PIL import Image
 from PIL.PngImagePlugin import PngInfo
+
+from talus_units import length
 
 INK, SOFT, FAINT, ACCENT = "#1f2933", "#616e7c", "#cbd2d9", "#0b7285"
 LINES = ("#0b7285", "#d9480f", "#5f3dc4", "#2b8a3e", "#c2255c", "#e67700", "#6f4518", "#868e96")
 EDGE = 0.12  # between titles and the edge of a chart [inch]
-RESOLUTION = 170  # dots per inch
+RESOLUTION = 120  # dots per inch
 PACKED = 4  # of 9: how thoroughly pictures are packed
 
 plt.rcParams.update({
@@ -37,7 +40,20 @@ def part_of(name, low, high):
     return LinearSegmentedColormap.from_list(f"{name}_part", plt.get_cmap(name)(np.linspace(low, high, 256)))
 
 
-GROUND = ("#e8d5b0", "#c2a278", "#b9bfa4", "#a9a29a", "#e0b88a", "#d5cfc9", "#a8895f", "#d8c774")  # of the soils
+GROUND = ("#a9a29a", "#c2a278", "#b9bfa4", "#e8d5b0", "#e0b88a", "#d5cfc9", "#a8895f", "#d8c774")  # of the soils
+
+
+def soil_colours(names):
+    """The colour of each soil, by its name: a further soil takes one that is free, and most others keep theirs."""
+    found, free = {}, list(GROUND)
+    for name in sorted(names, key=lambda one: zlib.crc32(one.encode())):
+        wanted = GROUND[zlib.crc32(name.encode()) % len(GROUND)]
+        found[name] = wanted if wanted in free else free[0]
+        free.remove(found[name])
+        free = free or list(GROUND)
+    return [found[name] for name in names]
+
+
 STATES = ("elastic", "peak", "softening", "residual")  # values 0, 1, 2, 3 of the field state
 STATE_COLOURS = ("#eef1f4", "#ffd43b", "#f76707", "#c92a2a")
 # of even steps in lightness; strain and pressure start pale, so that the eye goes to where there is some
@@ -52,6 +68,20 @@ SYMBOL = {"displacement": "|u|", "velocity": "|v|", "thickness": "h", "plastic_s
 
 def colours_of(field, signed=False):
     return SIGNED.get(field, BOTH) if signed else MAPS.get(field, plt.get_cmap("cividis"))
+
+
+class Places(MaxNLocator):
+    """Ticks of places [m] at round numbers of the unit of the run."""
+
+    def tick_values(self, low, high):
+        return super().tick_values(low * length()[0], high * length()[0]) / length()[0]
+
+
+def places(axis, most):
+    """Lets an axis of places have at most so many intervals, and numbers in the unit of the run."""
+    axis.set_major_locator(Places(most, steps=[1, 2, 5, 10]))
+    if length()[0] != 1:
+        axis.set_major_formatter(FuncFormatter(lambda at, _: f"{round(at * length()[0], 6):g}"))
 
 
 class LogTicks(Locator):

@@ -8,6 +8,25 @@ UNIT = re.compile(r"[A-Za-zµ°%][\w/^*.()²³µ°% -]*$")
 SHOWN = (("m2", "m²"), ("m3", "m³"), ("s2", "s²"), ("deg", "°"))  # how units are written
 DAY = 86400.0  # [s]
 TIMES = ((DAY, DAY, "d"), (3600, 3600, "h"), (120, 60, "min"))  # from so many seconds on
+# of US practice: factor from SI, unit, and from which number on the next larger one is used
+FOOT, POUND = 0.3048, 4.4482216152605
+US = {"m": ((1 / FOOT, "ft"),), "m/s": ((1 / FOOT, "ft/s"),), "m/s2": ((1 / FOOT, "ft/s2"),), "m/s²": ((1 / FOOT, "ft/s²"),), "m²": ((FOOT**-2, "ft²"),), "m³": ((FOOT**-3, "ft³"),),
+      "m³/m": ((FOOT**-2, "ft³/ft"),), "Pa": ((FOOT**2 / POUND, "psf"), (FOOT**2 / POUND / 1e3, "ksf")), "N": ((1 / POUND, "lbf"), (1e-3 / POUND, "kip")),
+      "J": ((1 / (POUND * FOOT), "ft·lbf"), (1e-3 / (POUND * FOOT), "ft·kip")), "kg/m3": ((9.80665 * FOOT**3 / POUND, "pcf"),), "N/m3": ((FOOT**3 / POUND, "pcf"),),
+      "kg": ((9.80665 / POUND, "lb"),), "t": ((9806.65 / POUND / 1e3, "kip"),), "t/m": ((9806.65 / POUND / 1e3 * FOOT, "kip/ft"),), "kg/m": ((9.80665 / POUND * FOOT, "lb/ft"),)}
+_of_run = {"us": False}
+SI = {"": 1, "Pa": 1, "kPa": 1e3, "MPa": 1e6, "N/m2": 1, "kN/m2": 1e3, "psf": 47.88025898, "ksf": 47880.25898, "psi": 6894.757293, "bar": 1e5,
+      "m": 1, "cm": 0.01, "mm": 1e-3, "ft": 0.3048, "s": 1, "min": 60, "h": 3600, "day": 86400, "d": 86400, "deg": 1, "m/s": 1, "mm/h": 1e-3 / 3600, "mm/day": 1e-3 / 86400}
+
+
+def use(scene):
+    """Lets all that is written from now on have the units that a scene asks for (output.units)."""
+    _of_run["us"] = scene.get("output", {}).get("units") == "US"
+
+
+def length():
+    """(factor, unit) of places."""
+    return US["m"][0] if _of_run["us"] else (1.0, "m")
 
 
 class Keys:
@@ -19,9 +38,16 @@ class Keys:
 
     def text(self, path, kind, key, value):
         """The value of a key in words; `path` is that of its table, such as body.NAME, and `kind` names its law, kind or curve."""
+        return text_of(value, *self._about(path, kind, key))
+
+    def _about(self, path, kind, key):
         table = self._keys.get(path, {})
         about = table.get("", {}).get(key) or table.get(kind, {}).get(key) or {}
-        return text_of(value, about.get("unit", ""), about.get("over_time", False))
+        return about.get("unit", ""), about.get("over_time", False)
+
+    def about(self, path, table, key):
+        """(unit, whether it may change over time) of a key of a table of the scene."""
+        return self._about(path, table.get("kind", table.get("law", "")), key)
 
     def row(self, path, values, kind_key=""):
         """{key in words: value in words} of a table of the scene; a table inside it on one line."""
@@ -36,6 +62,16 @@ class Keys:
         return row
 
 
+def number(value):
+    """A number of a scene in SI. Raises ValueError where it is an expression, or has a unit that is not known here."""
+    if isinstance(value, (int, float)):
+        return float(value)
+    match = re.fullmatch(r"\s*([-+]?[\d.]+(?:[eE][-+]?\d+)?)\s*([A-Za-z/0-9]*)\s*", value) if isinstance(value, str) else None
+    if not match or match[2] not in SI:
+        raise ValueError(value)
+    return float(match[1]) * SI[match[2]]
+
+
 def text_of(value, unit="", over_time=False):
     """A value of a scene in words: 13000 in Pa as '13 kPa', [[0, 12], [150, 0]] of degrees over time as '12° at 0 s, 0° at 150 s'. Texts that
     are quantities stay as they are; expressions get the unit of their values in brackets."""
@@ -47,11 +83,13 @@ def text_of(value, unit="", over_time=False):
         return list_of(value, unit, over_time)
     if not unit or not isinstance(value, str):
         return str(value)
-    number = NUMBER.match(value.strip())
-    rest = value.strip()[number.end():].strip() if number else ""
-    if number and not rest:
+    match = NUMBER.match(value.strip())
+    rest = value.strip()[match.end():].strip() if match else ""
+    if match and not rest:
         return quantity(float(value), unit)
-    return shown(value) if number and UNIT.match(rest) else f"{value} [{shown(unit)}]"
+    if match and _of_run["us"] and unit in US and rest in SI:
+        return quantity(number(value), unit)
+    return shown(value) if match and UNIT.match(rest) else f"{value} [{shown(unit)}]"
 
 
 def list_of(values, unit, over_time):
@@ -65,15 +103,18 @@ def list_of(values, unit, over_time):
         return "; ".join(text_of(one, unit, over_time) for one in values)
     own = any(isinstance(x, str) for one in values for x in one)  # some values carry their unit, so each is written with one
     say = (lambda one: f"{text_of(one[1], unit)} at {text_of(one[0], 's')}") if over_time else (lambda one: f"({', '.join(text_of(x, unit) if own else str(x) for x in one)})")
+    if _of_run["us"] and unit in US and not own and not over_time:
+        factor, unit = readable_unit(max(abs(x) for one in values for x in one), unit)
+        values = [[f"{factor * x:.5g}" for x in one] for one in values]
     few = values if len(values) <= ENTRIES else [values[0], values[-1]]
     text = " to ".join(map(say, few)) + f" in {len(values)} points" if few is not values else ", ".join(map(say, few))
     return text if over_time or own else with_shown(text, unit)
 
 
-def quantity(value, unit):
+def quantity(value, unit, digits=".6g"):
     """A number in a unit in which it reads well."""
     factor, unit = readable_unit(abs(value), unit)
-    return with_shown(f"{factor * value:.6g}", unit)
+    return with_shown(f"{factor * value:{digits}}", unit)
 
 
 def span(low, high, unit):
@@ -129,6 +170,8 @@ def capital(text):
 
 def readable_unit(largest, unit):
     """Factor and unit in which numbers up to `largest` read well: 110000 Pa -> (1e-3, 'kPa')."""
+    if _of_run["us"] and unit in US:
+        return next((one for one in reversed(US[unit]) if largest * one[0] >= 1), US[unit][0])
     if unit in ("Pa", "J", "N", "W"):
         for power, prefix in ((9, "G"), (6, "M"), (3, "k")):
             if largest >= 10**power:

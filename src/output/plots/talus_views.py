@@ -6,6 +6,7 @@ from talus_moments import in_both
 from talus_relief import Eye
 from talus_results import slides
 from talus_tiles import GAP_IN_SPACE, tiles
+from talus_units import length
 from talus_way import Way
 
 ASTRAY = 2.0  # how far the way of a slide may leave a plane of two axes, over the spacing of particles, and is still shown there
@@ -21,7 +22,7 @@ class View:
 
     @property
     def labels(self):
-        return [f"{'xyz'[axis]} [m]" for axis in (self.across, self.up)]
+        return [f"{'xyz'[axis]} [{length()[1]}]" for axis in (self.across, self.up)]
 
     def flat(self, position):
         return position[:, [self.across, self.up]]
@@ -55,7 +56,7 @@ class WayView(View):
 
     @property
     def labels(self):
-        return ["distance along the slide [m]", f"{'xyz'[self.up]} [m]"]
+        return [f"distance along the slide [{length()[1]}]", f"{'xyz'[self.up]} [{length()[1]}]"]
 
     def flat(self, position):
         return np.column_stack([self.plane.beside(position[:, self.level])[0], position[:, self.up]])
@@ -80,7 +81,7 @@ class MapView(View):
 
     @property
     def labels(self):
-        return ["x, east [m]", "y, north [m]"] if self.of_terrain else super().labels
+        return [f"x, east [{length()[1]}]", f"y, north [{length()[1]}]"] if self.of_terrain else super().labels
 
 
 class Oblique:
@@ -126,7 +127,7 @@ def views_of(results):
         eye = Eye.before(ahead, up)
         return [Oblique("from above in front", eye), Oblique("cut open along the slide", eye, (normal, way.end @ normal[level])),
                 WayView("section along the slide", way, level, up), above]
-    at = f"at {'xyz'[aside]} = {centre:.3g} m"
+    at = f"at {'xyz'[aside]} = {centre * length()[0]:.3g} {length()[1]}"
     eye = Eye.in_front(moved[:, along].sum(), along, up)
     return [Oblique("from above in front", eye), Oblique(f"cut open {at}", eye, (np.eye(3)[aside], centre)), View(f"section {at}", along, up, (aside, centre)),
             above]

@@ -79,6 +79,13 @@ class Verdicts(unittest.TestCase):
         self.assertIn(("load_time_of_failure_s", "missing"), [(one["quantity"], one["state"]) for one in judged])
         self.assertFalse(judge(rows(load_time_of_failure_s=[None] * 3), "cells", 0.05)[1])
 
+    def test_a_small_last_change_is_none_whatever_the_order(self):
+        self.assertEqual(halved([1.06, 1.001, 1.0]), "near")
+        self.assertEqual(halved([1.06, 1.01, 1.0]), "settles")
+        sentences, decides, _ = judge(rows(crest_displacement_m=[2.12, 2.002, 2.0]), "cells", 0.05)
+        self.assertFalse(decides)
+        self.assertTrue(any("changes it by 0.1 %, a tenth or less of 5 %, and the cell size does not decide it" in one for one in sentences), sentences)
+
     def test_what_settles_has_an_order_and_a_limit(self):
         sentences, _, judged = judge(rows(crest_displacement_m=[2.16, 2.04, 2.01]), "cells", 0.05)
         self.assertIn("The crest displacement is 2.01 to 2.16 m, 7.5 % apart: it settles, to 2 m by extrapolation at the order 2, and the last refinement changes it by 1.5 %, "
@@ -88,7 +95,7 @@ class Verdicts(unittest.TestCase):
     def test_places_are_said_to_a_cell(self):
         sentences, decides, _ = judge(rows(travel_distance_m=[3.4, 3.0, 3.2]), "cells", 0.05)
         self.assertFalse(decides)
-        self.assertIn("The travel distance is 3 to 3.4 m, 12 % apart: the cell size does not decide it within 5 % or one cell.", sentences)
+        self.assertIn("The travel distance is 3 to 3.4 m, 12 % apart: the cell size does not decide it within one cell of 0.4 m.", sentences)
 
     def test_a_run_that_broke_off_is_no_agreement(self):
         runs = rows() + [{"value": 0.05, "unit": "m", "failure": "a particle left the mesh"}]

@@ -15,6 +15,7 @@ import tempfile
 import types
 import unittest
 import unittest.mock
+import xml.dom.minidom
 
 import h5py
 import numpy as np
@@ -241,6 +242,10 @@ class Maps(unittest.TestCase):
                 self.assertEqual((reference.GetName(), reference.IsGeographic()), ("Undefined Cartesian SRS", 0))
                 with contextlib.closing(sqlite3.connect(FOLDER / results / "maps/deposit.gpkg")) as package:
                     self.assertEqual(package.execute("select distinct srs_id from gpkg_geometry_columns").fetchall(), [(-1,)])
+                    self.assertEqual(package.execute("select f_table_name, useAsDefault from layer_styles").fetchall(), [("outline", 1), ("path", 1)])
+                style = xml.dom.minidom.parse(str(FOLDER / results / "maps/thickness.qml"))  # by which QGIS opens the grid
+                self.assertEqual(float(style.getElementsByTagName("item")[0].getAttribute("value")), 0)
+                self.assertEqual({path.stem for path in (FOLDER / results / "maps").glob("*.qml")}, {"thickness", "largest_thickness", "largest_speed", "arrival_time", "change"})
                 west, east, south, north = outline.GetEnvelope()
                 np.testing.assert_allclose([west, east, south, north], [1.5, 2, -0.6, 0], atol=cell)
                 self.assertAlmostEqual(numbers["area_m2"], outline.GetArea(), delta=1e-9)
@@ -271,9 +276,9 @@ class Maps(unittest.TestCase):
                 self.assertIn("soil at 0.100 s, 100 % of it still moving, at up to 10 m/s", said)
                 self.assertIn("100 % of what slid is faster than 0.1 m/s", said)
                 # from the crown, at the upper face of the block at the start, to the middle of the furthest cell
-                self.assertTrue(0.5 < numbers["run_out_m"] < np.hypot(1.5, 0.6) + cell)
+                self.assertTrue(0.5 < numbers["travel_distance_m"] < np.hypot(1.5, 0.6) + cell)
                 self.assertTrue(0.3 < numbers["fall_height_m"] < 0.5)  # particles lie inside of the block, 0.5 m high
-                angle = np.degrees(np.arctan(numbers["fall_height_m"] / numbers["run_out_m"]))
+                angle = np.degrees(np.arctan(numbers["fall_height_m"] / numbers["travel_distance_m"]))
                 self.assertAlmostEqual(numbers["angle_of_reach_deg"], angle, delta=1e-9)
                 change, _, _ = read(FOLDER / results / "maps/change.tif")
                 self.assertLess(change[3, 1], -0.4)

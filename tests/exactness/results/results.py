@@ -91,6 +91,16 @@ class Module(unittest.TestCase):
         self.refused(KeyError, "did you mean displacement", last.values, "displacment")
         self.refused(KeyError, "did you mean displacement", last.unit, "displacment")
 
+    def test_displacement_counts_from_the_start_of_a_stage(self):
+        last, since = self.results.snapshots[-1], self.results.since("slide")
+        before = next(one for one, after in zip(self.results.snapshots, self.results.snapshots[1:]) if after.stage == "slide")
+        self.assertEqual(since.snapshots[0].time, before.time)
+        self.assertEqual(np.abs(since.snapshots[0].values("displacement")).max(), 0)
+        np.testing.assert_allclose(since.snapshots[-1].values("displacement"), last.values("displacement") - before.values("displacement"), atol=1e-12)
+        np.testing.assert_array_equal(last.values("displacement"), Results(self.slope).snapshots[-1].values("displacement"))
+        self.assertEqual(since.history["crest_displacement_m"][0], 0)
+        self.refused(KeyError, "did you mean slide", self.results.since, "slid")
+
     def test_lines_and_model_are_read(self):
         line = self.results.lines()["down"]
         self.assertEqual(line["displacement_m"].shape, (len(line.time), len(line["x_m"][0])))

@@ -31,6 +31,7 @@ from talus_measures import MEASURES, flow  # noqa: E402
 from talus_moments import chosen_snapshots, since_reset, telling, with_stress  # noqa: E402
 from talus_outcomes import FAILS, STANDS  # noqa: E402
 from talus_paths import grouped, label_of, name_envelopes, name_of_mean_stress  # noqa: E402
+import talus_style  # noqa: E402
 from talus_report import bases, key_results, motion_at_end, ways_out  # noqa: E402
 from talus_results import MECHANISM, NOT_ENDED, History, Quantity, Results, still_moving  # noqa: E402
 from talus_relief import Eye  # noqa: E402
@@ -906,9 +907,9 @@ class Soils(unittest.TestCase):
     def test_are_seen_where_a_field_has_nothing_to_show(self):
         value = np.where(np.arange(200) % 20 < 10, 0.0, 1.0)
         scale = Colours("displacement", [types.SimpleNamespace(scalar=lambda field: (value, "m"))])
-        picture = painted(self.owner, value, self.body, tints(2), scale)
+        picture = painted(self.owner, value, self.body, tints(["clay", "sand"]), scale)
         for row, body in ((2, 0), (7, 1)):
-            np.testing.assert_allclose(picture[row, 3], [*tints(2)[body], 1])
+            np.testing.assert_allclose(picture[row, 3], [*tints(["clay", "sand"])[body], 1])
             np.testing.assert_allclose(picture[row, 15], scale.map(scale.norm(1.0)))
         self.assertLess(picture[4, 3, :3].sum(), picture[2, 3, :3].sum() - 0.5)  # the line between them
 
@@ -917,7 +918,7 @@ class Soils(unittest.TestCase):
         value = np.ones(400)
         value[:100], value[305] = 0, 0  # a quarter of the soil, and one particle amid the rest
         scale = Colours("displacement", [types.SimpleNamespace(scalar=lambda field: (value, "m"))])
-        tint, body = tints(1), np.zeros(400, int)
+        tint, body = tints(["clay"]), np.zeros(400, int)
         at = {name: painted(owner, value, body, tint, scale, reach)[row, column, :3].tolist() for name, reach, row, column in
               (("hole", 0, 155, 55), ("none", 8, 155, 55), ("quarter", 8, 20, 55), ("edge", 8, 0, 0))}
         self.assertEqual(at["hole"], tint[0].tolist())
@@ -1364,9 +1365,13 @@ class Charts(unittest.TestCase):
 
     def test_quantiles_of_a_tornado_are_of_the_runs_with_the_outcome(self):
         rows = [{"c": str(k), "factor_of_safety": float(k) if k > 10 else None} for k in range(1, 31)]
-        fit = talus_study.sensitivities(rows, [{"name": "c", "unit": "Pa", "numeric": True}], "factor_of_safety")
+        variable = {"name": "c", "unit": "Pa", "numeric": True, "random": True}
+        fit = talus_study.sensitivities(rows, [variable], "factor_of_safety")
         self.assertEqual(fit["runs"], 20)
         self.assertAlmostEqual(fit["bars"][0]["quantiles"][0], 11 + 0.1 * 19)
+        chosen = talus_study.sensitivities(rows, [variable | {"random": False}], "factor_of_safety")["bars"][0]  # who chose the values gets no quantiles of them
+        self.assertEqual(chosen["ends"], [11, 30])
+        self.assertNotIn("quantiles", chosen)
 
 
 class Mechanisms(unittest.TestCase):

@@ -32,7 +32,7 @@ TEST(Pictures, and_a_report_are_drawn_from_the_results) {
   describe(dir,
            "crest_displacement_m,displacement,m,point,crest\nkinetic_J,energy,J,run,kinetic\nmass_kg,mass,kg,run,\n");
   ASSERT_TRUE(draw_pictures(dir));
-  for (const char *name : {"displacement.png", "plastic_strain.png", "history_displacement.png", "energy.png"})
+  for (const char *name : {"displacement.png", "plastic_strain_large.png", "history_displacement.png", "energy.png"})
     EXPECT_EQ(content(dir + "/pictures/" + name).substr(1, 3), "PNG") << name;
   const std::string drawn_by = std::string("Software") + '\0' + program + ",";  // of PNG's type tEXt
   EXPECT_NE(content(dir + "/pictures/displacement.png").find(drawn_by), std::string::npos);
@@ -121,7 +121,7 @@ TEST(Pictures, show_stress_paths_and_the_water_ledger) {
            "ledger,kg,run,error\n");
   ASSERT_TRUE(draw_pictures(dir));
   EXPECT_EQ(content(dir + "/pictures/strength.csv").substr(0, 40), "body,state,suction_Pa,slope,intercept_Pa");
-  for (const char *name : {"stress_paths.png", "mobilised_friction.png", "state.png", "water_ledger.png"})
+  for (const char *name : {"stress_paths.png", "mobilised_friction_large.png", "state_large.png", "water_ledger.png"})
     EXPECT_EQ(content(dir + "/pictures/" + name).substr(1, 3), "PNG") << name;
 }
 
