@@ -50,6 +50,7 @@ template <int dim>
 void check_component(const World<dim> &world, const std::vector<NamedBoundary> &sources, std::size_t component) {
   const std::string key = "earthquake." + std::to_string(component) + ".direction";
   const bool wave = std::ranges::any_of(sources, [](const NamedBoundary &one) { return one.kind.incoming_wave; });
+  const bool weighs = world.scene.gravity_size() > 0;  // else it may be in flight
   bool held = false;
   for (const NamedBoundary &source : sources) {
     const std::string path = "boundary." + source.name + ".kind";
@@ -60,11 +61,11 @@ void check_component(const World<dim> &world, const std::vector<NamedBoundary> &
       world.scene.complain(path, "holds the soil along " + key +
                                      ", while a wave comes in that moves the ground: take tied or free_field at sides "
                                      "and non_reflecting at the base, or leave incoming_wave out");
-    if (!wave && grip.beneath && world.scene.gravity_size() > 0)
+    if (!wave && grip.beneath && weighs)
       world.scene.complain(path, "lets the ground slide beneath the soil along " + key +
                                      ", so that it does not shake it: take fixed, or friction");
   }
-  if (!wave && !held)
+  if (!wave && !held && weighs)
     world.scene.complain(key,
                          "is one in which no boundary takes the soil along: give it a base of kind = \"fixed\" or "
                          "\"friction\", or a non_reflecting one with incoming_wave = true");
