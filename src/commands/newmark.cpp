@@ -142,7 +142,7 @@ struct Slid {
   GroundMotion motion;  ///< positive along x
   Intensity intensity;
   std::vector<double> way, reversed;         ///< downhill, also of the reversed motion [m]
-  double level_ground = 0;                   ///< the larger of both polarities, with one yield both ways [m]
+  double level_ground = 0;                   ///< net, the larger of both polarities, with one yield both ways [m]
   double decoupled = 0;                      ///< the larger of both, under the mean acceleration of a layer [m]
   Estimate ratio, with_magnitude, of_arias;  ///< Jibson (2007)
   BrayMacedo bray;
@@ -228,8 +228,9 @@ void print(const Yielding &slope, const std::vector<Slid> &all, double magnitude
               one.intensity.arias);
   std::printf("  rigid block              %8.3g cm, reversed motion %.3g cm\n", 100 * one.way.back(),
               100 * one.reversed.back());
-  std::printf("  as on level ground       %8.3g cm, with the same yield coefficient both ways\n",
-              100 * one.level_ground);
+  std::printf(
+      "  slips both ways          %8.3g cm net, where it yields uphill as downhill and ways cancel: level ground\n",
+      100 * one.level_ground);
   std::printf("  decoupled from the layer %8.3g cm\n", 100 * one.decoupled);
   if (one.ratio.median > 0)
     std::printf("  Jibson (2007)            a_c/a_max %s; Arias %s%s%s\n", in_centimetres(one.ratio).c_str(),

@@ -57,7 +57,7 @@ std::string spectrum_of(const GroundMotion &motion) {
   return text.str();
 }
 
-void print(const std::string &name, const GroundMotion &motion) {
+void print(const std::string &name, const GroundMotion &motion, const EarthquakeSource &source) {
   const Intensity of = intensity_of(motion);
   std::printf("%-16s %8.4g s in steps of %g s\n", name.c_str(), motion.duration(), motion.step);
   std::printf("  peak acceleration        %10.4g m/s2 = %.4g g\n", of.peak_acceleration,
@@ -68,7 +68,7 @@ void print(const std::string &name, const GroundMotion &motion) {
   std::printf("  duration D5-95           %10.4g s, from %.4g to %.4g s\n", of.significant_end - of.significant_begin,
               of.significant_begin, of.significant_end);
   std::printf("  cumulative abs. velocity %10.4g m/s\n", of.cumulative_velocity);
-  if (const std::string drift = drift_of(motion); !drift.empty()) std::printf("  warning: %s\n", drift.c_str());
+  if (const std::string drift = drift_of(motion, source); !drift.empty()) std::printf("  warning: %s\n", drift.c_str());
 }
 
 int show_record(const RecordArguments &arguments) {
@@ -80,7 +80,7 @@ int show_record(const RecordArguments &arguments) {
   for (std::size_t k = 0; k < components.size(); ++k) {
     const GroundMotion motion = read_motion(components[k]);
     const std::string title = components.size() > 1 ? name + "_" + std::to_string(k + 1) : name;
-    print(title, motion);
+    print(title, motion, components[k]);
     write(dir + "/" + title + ".csv", history_of(motion));
     write(dir + "/" + title + "_spectrum.csv", spectrum_of(motion));
     drawn.push_back(title);

@@ -107,7 +107,7 @@ void doubt_stages(const Scene &scene, Doubts &doubts) {
                      rounded(end) + " s: it acts as at t = 0 in all of the run"}});
   }
   for (const EarthquakeSource &component : scene.earthquake)
-    if (const std::string sentence = drift_of(read_motion(component)); !sentence.empty())
+    if (const std::string sentence = drift_of(read_motion(component), component); !sentence.empty())
       doubts.say({{"drift", true, sentence}});
   doubts.say(
       {{"idle_earthquake",

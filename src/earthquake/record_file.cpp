@@ -52,7 +52,9 @@ class Text {
         found.push_back(value), at = after;
       }
       while (std::isspace(static_cast<unsigned char>(*at))) ++at;
-      if (*at && found.size() < count) complain(line, "has `" + std::string(at).substr(0, 20) + "` among the values");
+      if (*at && found.size() < count)
+        complain(line, "has `" + std::string(at).substr(0, 20) + "` among the values" +
+                           (*at == ',' ? ": numbers need decimal points, not commas" : ""));
     }
     return found;
   }
@@ -73,9 +75,11 @@ class Text {
 
 /// The unit of an acceleration in SI, as records write it; 0 for another one.
 double acceleration_unit(std::string name) {
-  for (char &c : name) c = static_cast<char>(std::tolower(c));
+  for (char &c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  if (const std::size_t square = name.find("\u00b2"); square != std::string::npos) name.replace(square, 2, "2");
   std::erase_if(name, [](char c) { return c == ' ' || c == '^' || c == '*' || c == '_'; });
   if (name == "g") return gravity;
+  if (name == "%g") return gravity / 100;
   if (name == "mg") return gravity / 1000;
   if (name == "gal" || name == "cm/s2" || name == "cm/sec2" || name == "cm/s/s" || name == "cm/sec/sec") return 0.01;
   if (name == "m/s2" || name == "m/sec2" || name == "m/s/s" || name == "ms2" || name == "m/sec/sec") return 1;
@@ -189,8 +193,12 @@ Column column_of(std::string head) {
   return column;
 }
 
-std::vector<std::string> fields_of(const std::string &line) {
-  const char separator = line.find(',') != std::string::npos ? ',' : line.find(';') != std::string::npos ? ';' : '\t';
+/// Between the names of columns. Where it is no comma, a comma in a number is a decimal one.
+char separator_of(const std::string &head) {
+  return head.find(';') != std::string::npos ? ';' : head.find('\t') != std::string::npos ? '\t' : ',';
+}
+
+std::vector<std::string> fields_of(const std::string &line, char separator) {
   std::vector<std::string> fields;
   std::istringstream in(line);
   for (std::string field; std::getline(in, field, separator);) fields.push_back(field);
@@ -206,8 +214,9 @@ GroundMotion read_csv(const Text &text, const std::string &component) {
   };
   while (head < lines.size() && idle(head)) ++head;
   if (head == lines.size()) text.complain("has no record");
+  const char separator = separator_of(lines[head]);
   std::vector<Column> columns;
-  for (const std::string &field : fields_of(lines[head])) columns.push_back(column_of(field));
+  for (const std::string &field : fields_of(lines[head], separator)) columns.push_back(column_of(field));
   const auto time = std::ranges::find_if(columns, &Column::time);
   std::vector<std::string> names;
   std::vector<std::size_t> accelerations;
@@ -216,7 +225,7 @@ GroundMotion read_csv(const Text &text, const std::string &component) {
   if (time == columns.end() || names.empty())
     text.complain(head,
                   "must name the columns of time and acceleration with their units, as in \"time [s], acceleration "
-                  "[g]\"; known are s, ms, g, mg, cm/s2, gal, m/s2");
+                  "[g]\"; known are s, ms, g, %g, mg, cm/s2, gal, m/s2");
   const auto wanted = component.empty() ? names.begin() : std::ranges::find(names, component);
   if (wanted == names.end() || (component.empty() && names.size() > 1))
     text.complain(head, "has the accelerations " + join(names) + ": choose one by component");
@@ -226,7 +235,13 @@ GroundMotion read_csv(const Text &text, const std::string &component) {
   std::vector<std::size_t> line_of;
   for (std::size_t k = head + 1; k < lines.size(); ++k) {
     if (idle(k)) continue;
-    const std::vector<std::string> fields = fields_of(lines[k]);
+    std::vector<std::string> fields = fields_of(lines[k], separator);
+    if (fields.size() > columns.size())
+      text.complain(k, "has " + std::to_string(fields.size()) + " columns, and the header names " +
+                           std::to_string(columns.size()) +
+                           ": are there decimal commas? Separate columns by semicolons then, also in the header");
+    if (separator != ',')
+      for (std::string &field : fields) std::ranges::replace(field, ',', '.');
     for (const std::size_t c : {of_time, of_value}) {
       char *after = nullptr;
       const double value = c < fields.size() ? std::strtod(fields[c].c_str(), &after) : 0;

@@ -43,16 +43,20 @@ std::vector<EarthquakeSource> read_components(const std::string &text, const std
   return root.earthquake;
 }
 
-std::string drift_of(const GroundMotion &motion) {
+std::string drift_of(const GroundMotion &motion, const EarthquakeSource &source) {
   constexpr double small = 0.1;  // of the largest velocity
   const std::vector<double> v = motion.velocity();
   double most = 0;
   for (const double one : v) most = std::max(most, std::abs(one));
   if (std::abs(v.back()) <= small * most) return "";
   return "the record leaves the ground with " + rounded(v.back()) + " m/s, " +
-         rounded(100 * std::abs(v.back()) / most) +
-         " % of its largest velocity: its baseline is not corrected, or it is cut off. Give it baseline = 2, or "
-         "high_pass = \"0.1 Hz\"";
+         rounded(100 * std::abs(v.back()) / most) + " % of its largest velocity: " +
+         (source.high_pass > 0  ? "it is cut off, or drifts faster than the corner of its high_pass; let it end where "
+                                  "the ground is at rest"
+          : source.baseline > 0 ? "its baseline needs more than a polynomial, or it is cut off. Give it high_pass = "
+                                  "\"0.1 Hz\" beside the baseline, or let it end where the ground is at rest"
+                                : "its baseline is not corrected, or it is cut off. Give it baseline = 2, or "
+                                  "high_pass = \"0.1 Hz\"");
 }
 
 }  // namespace talus

@@ -24,7 +24,8 @@ EarthquakeSource record_source(const std::string &file, const std::vector<std::s
 /// The components of a text that has no more than [[earthquake]], with overrides. Throws SceneError.
 std::vector<EarthquakeSource> read_components(const std::string &text, const std::vector<std::string> &overrides = {});
 
-/// A sentence on a motion that leaves the ground with a velocity, as wrong baselines do; empty where it does not.
-std::string drift_of(const GroundMotion &motion);
+/// A sentence on a motion that leaves the ground with a velocity, as wrong baselines do, with the corrections that its
+/// source does not have yet; empty where it does not.
+std::string drift_of(const GroundMotion &motion, const EarthquakeSource &source);
 
 }  // namespace talus

@@ -16,6 +16,7 @@
 #include "scene/transfer_source.h"
 #include "scene/water_source.h"
 #include "simulation/gap_walls.h"
+#include "simulation/shaken_supports.h"
 #include "simulation/world.h"
 #include "solvers/quasi_static/pore_flow.h"
 
@@ -36,6 +37,7 @@ World<dim>::World(MPI_Comm world, const Scene &of, DM plex, const std::string &m
   find_strengths();
   check_boundaries(sources);
   check_earthquake();
+  check_shaken_supports(*this, sources);
   tie_sides(sources, true);
   require(conditions.setup(mesh, std::move(sources)));
   check_gap_walls(*this);

@@ -41,6 +41,7 @@
 #include "tests/verification/rigid_rotation/exact.h"
 #include "tests/verification/rigid_translation/exact.h"
 #include "tests/verification/shaken_block/exact.h"
+#include "tests/verification/shaken_slope/exact.h"
 #include "tests/verification/site_response/exact.h"
 #include "tests/verification/spinning_block/exact.h"
 #include "tests/verification/srivastava_yeh/exact.h"
@@ -86,6 +87,8 @@ inline constexpr LadderEntry ladder[] = {
     {"incoming_wave", "verification", "wave that comes in through dashpots, from the same and from harder rock",
      rungs::incoming_wave},
     {"shaken_block", "verification", "block on a shaken plane beside Newmark's sliding block", rungs::shaken_block},
+    {"shaken_slope", "verification", "slopes that keep their strength beside Newmark's sliding block",
+     rungs::shaken_slope},
     {"site_response", "verification", "layer on a half-space between tied and free-field sides", rungs::site_response},
     {"water_table", "verification", "column below open water, and below a water table that falls", rungs::water_table},
     {"rigid_translation", "verification", "block in free flight: no stress, momentum to round-off",

@@ -32,9 +32,9 @@ GroundMotion KanaiTajimiSource::make() const {
   Noise noise(seed);
   Oscillator ground(1 / ground_frequency, ground_damping, step), second(1 / high_pass, 0.6, step);
   const auto strength = [&](double t) {
-    if (t < rise) return std::pow(t / rise, 2);
-    if (t < rise + strong) return 1.;
-    return std::pow(decay_end, (t - rise - strong) / (duration - rise - strong));
+    if (t < rise_ends()) return std::pow(t / rise_ends(), 2);
+    if (t < strong_ends()) return 1.;
+    return std::pow(decay_end, (t - strong_ends()) / (duration - strong_ends()));
   };
   double before = 0, shaken = 0;
   for (std::size_t k = 1; k <= steps; ++k) {

@@ -9,7 +9,7 @@
 namespace talus {
 
 /// A sine whose frequency grows or falls linearly, or stays, with an amplitude that rises over the first and falls over
-/// the last `taper` by a cosine.
+/// the last `taper` by half a wave of a cosine.
 struct SineSource {
   static constexpr const char *name = "sine";
   double amplitude = required;  ///< of the acceleration [m/s2]
@@ -24,7 +24,7 @@ struct SineSource {
     v.number("last_frequency", last_frequency, hertz, Range{0, 100}, "sweep: frequency at its end; 0: no sweep");
     v.number("duration", duration, second, Range{1e-3, 1e4}, "duration");
     v.number("taper", taper, second, Range{0, 1e4},
-             "time in which the amplitude rises at the begin, and falls at the end");
+             "time in which the amplitude rises at the begin, and falls at the end, by half a wave of a cosine");
   }
   std::string problem() const { return 2 * taper > duration ? "taper must not exceed half of duration" : ""; }
   GroundMotion make() const {

@@ -133,17 +133,39 @@ TEST(KanaiTajimi, IsRepeatable) {
   const GroundMotion first = source.make();
   EXPECT_EQ(first.acceleration, source.make().acceleration);
   EXPECT_NEAR(first.peak(), 3, 1e-12);
-  EXPECT_TRUE(drift_of(first).empty()) << drift_of(first);
+  EXPECT_TRUE(drift_of(first, {}).empty()) << drift_of(first, {});
   EXPECT_GT(spectral_acceleration(first, 0.4), 3 * spectral_acceleration(first, 4));
   source.seed = 2;
   EXPECT_NE(first.acceleration, source.make().acceleration);
   EXPECT_NEAR(first.acceleration[500], -0.20488816832, 1e-9) << "on any machine";
 }
 
+TEST(KanaiTajimi, FitsIntoItsDuration) {
+  KanaiTajimiSource source;
+  for (const double duration : {3., 12., 15., 40.}) {
+    source.duration = duration;
+    EXPECT_EQ(source.problem(), "");
+    EXPECT_LE(source.strong_ends(), 0.8 * duration + 1e-9) << "it has time to decay";
+  }
+  EXPECT_EQ(source.rise_ends(), 2);
+  EXPECT_EQ(source.strong_ends(), 12);
+  source.duration = 10, source.strong = 9;
+  EXPECT_NE(source.problem(), "");
+}
+
 TEST(Drift, OfARecordWithoutBaselineIsSaid) {
   GroundMotion motion = sine(1, 1, 10, 0.01);
   for (double &a : motion.acceleration) a += 0.1;
-  EXPECT_NE(drift_of(motion).find("% of its largest velocity"), std::string::npos);
+  const auto says = [&](const EarthquakeSource &source, const char *words) {
+    return drift_of(motion, source).find(words) != std::string::npos;
+  };
+  EarthquakeSource source;
+  EXPECT_TRUE(says(source, "% of its largest velocity")) << drift_of(motion, source);
+  EXPECT_TRUE(says(source, "baseline = 2, or high_pass"));
+  source.baseline = 2;
+  EXPECT_FALSE(says(source, "baseline = 2")) << "it has that already";
+  source.high_pass = 0.1;
+  EXPECT_FALSE(says(source, "Give it")) << drift_of(motion, source);
   correct_baseline(motion, 2);
   EXPECT_LT(std::abs(motion.velocity().back()), 0.2);
 }

@@ -109,6 +109,18 @@ TEST_F(Records, OfEachFormatAreRead) {
   EXPECT_NEAR(read("time_s;acceleration_m_s2\r\n0;1\r\n0.5;-1\r\n").acceleration[1], -1, 1e-12);
 }
 
+/// Semicolons separate numbers with decimal commas; units come with signs of their own.
+TEST_F(Records, OfSpreadsheetsAreRead) {
+  const GroundMotion commas = read("t [s];a [cm/s\u00b2]\n0,00;1,5\n0,01;-2,5\n");
+  EXPECT_DOUBLE_EQ(commas.step, 0.01);
+  EXPECT_NEAR(commas.acceleration[1], -0.025, 1e-15);
+  EXPECT_NEAR(read("t [s],a [%g]\n0,1\n1,5\n").acceleration[1], 0.05 * g, 1e-12);
+  EXPECT_NEAR(read("t [s],a [cm/s^2]\n0,1\n1,5\n").acceleration[1], 0.05, 1e-12);
+  EXPECT_THAT(refusal("t [s],a [g]\n0,00,0,1\n0,01,0,2\n"),
+              HasSubstr("line 2: has 4 columns, and the header names 2: are there decimal commas?"));
+  EXPECT_THAT(refusal("NPTS= 3, DT= .01 SEC\n0,1 0,2 0,3\n"), HasSubstr("numbers need decimal points, not commas"));
+}
+
 TEST_F(Records, WithRoundedTimesAreEven) {
   EXPECT_NEAR(read("t [s],a [m/s2]\n0,1\n0.033,2\n0.067,3\n0.1,4\n").step, 1. / 30, 1e-12);
 }
