@@ -12,7 +12,7 @@ PetscErrorCode LimitState<dim>::creep(double small, LimitSearch *result) {
   constexpr double first_prop = 0.1, softest = 1e-9, stiffest = 10;
   constexpr double of_prop = 0.5;   // out of balance at the end of a step, over the force of the prop
   constexpr double growth = 3.162;  // of the prop, for a step that is easier or harder
-  constexpr int most_iterations = 150, most_per_step = 12, easy = 6, easiest = 2;
+  constexpr int most_iterations = 100, most_per_step = 12, easy = 6, easiest = 2;
   constexpr double lasting = 0.75;  // of the force out of balance, while the soil goes twice as far: it fails
   PetscFunctionBeginUser;
   *result = {};

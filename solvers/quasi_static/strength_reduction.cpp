@@ -169,11 +169,12 @@ class Reduction {
     const bool energy = flow_ != TrialFlow::own;
     PetscCall(attempt_from(stable_, &LimitState<dim>::search, &trial, interrupted));
     const auto open = [&] { return trial.outcome == TrialOutcome::undecided && !*interrupted; };
-    if (!energy && trial.outcome == TrialOutcome::mechanism) trial.outcome = TrialOutcome::undecided;
+    // soil with psi < phi follows a mechanism that is a small step away, and takes a smaller step before others
+    const bool near = any_stable_ && narrow(stable_factor_, factor);
+    if (!energy && !near && trial.outcome == TrialOutcome::mechanism) trial.outcome = TrialOutcome::undecided;
     // from the first state too, where the last one leads nowhere
     if (open() && energy && any_stable_) PetscCall(attempt_from(start_, &LimitState<dim>::search, &trial, interrupted));
-    // soil with psi < phi takes a smaller step first
-    const bool last = energy || !any_stable_ || narrow(stable_factor_, factor);
+    const bool last = energy || near || !any_stable_;
     if (open() && !energy && settings_.by_damped_motion && factor > long_way * stable_factor_)
       PetscCall(attempt_from(stable_, &Reduction::creep, &trial, interrupted));
     if (open() && last && settings_.by_damped_motion)

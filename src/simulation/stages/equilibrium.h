@@ -56,12 +56,12 @@ class EquilibriumStage final : public StaticStage<dim> {
   void describe(const Path &path, std::ostream &text) override {
     this->describe_equilibrium(path, text);
     if (left_at_ >= 0)
-      text << "; its load steps ended at " << 100 * left_at_
-           << " %, and the rest came at once, against an elastic prop that was then taken away"
+      text << "; its load steps ended at " << 100 * left_at_ << " %, and the rest came at once, "
            << (this->run_.statics.dilated
-                   ? ", in soil that moved with psi = phi: it bears this stress with its own psi too, but lateral "
-                     "stress and displacements are those of soil that dilates"
-                   : ": displacements depend on this way more than stresses do")
+                   ? "against an elastic prop that was then taken away, in soil that moved with psi = phi: it bears "
+                     "this stress with its own psi too, but lateral stress and displacements are those of soil that "
+                     "dilates"
+                   : "under which the soil crept to rest: displacements depend on this way more than stresses do")
            << ". Other load_steps (here " << this->keys_.load_steps
            << ") may do without, and so may initial_stress = \"k0\"";
   }
