@@ -267,7 +267,7 @@ PetscErrorCode QuasiStatic<dim>::advance(double share, double load_time, double 
     if (!balanced_) PetscCall(make_solver());
     PetscFunctionReturn(0);
   };
-  const bool creeps = may_creep(softening);
+  const bool creeps = share_ == 0 && may_creep(softening);  // nothing of the path is borne that could show what moves
   const auto ended = [&] { return balanced_ || stopped_ || creeps || !outcome->moving.empty(); };
   PetscCall(search(SNESLINESEARCHCP));
   const bool bare = share_ == 0;  // contact opens and closes at many nodes

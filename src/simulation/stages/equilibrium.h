@@ -25,7 +25,8 @@ class EquilibriumStage final : public StaticStage<dim> {
       const double before = this->load_at(from), after = this->load_at(to);
       PetscFunctionBeginUser;
       PetscCall(problem.advance(to, after, before, after - before, stage.softening, outcome));
-      if (outcome->converged || outcome->stopped || !may_creep || at_once) PetscFunctionReturn(0);
+      const bool ended = outcome->converged || outcome->stopped || !outcome->moving.empty();
+      if (ended || !may_creep || at_once) PetscFunctionReturn(0);
       PetscCall(creep_to(problem, to, after, time, tolerance, outcome));
       PetscFunctionReturn(0);
     };
