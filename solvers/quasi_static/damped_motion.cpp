@@ -62,7 +62,7 @@ PetscErrorCode LimitState<dim>::move(LimitSearch *result) {
   Vector mass, velocity, way, way_then;  // at the last look
   for (Vector *v : {&mass, &velocity, &way, &way_then}) PetscCall(problem_.soil().nodes().global_vector(*v));
   PetscCall(masses_of(elastic_, mass));
-  PetscCall(problem_.prepare(1, load_time_, time_, 0, x_));
+  PetscCall(problem_.prepare(share_, load_time_, time_, 0, x_));
   PetscCall(problem_.residual(x_, force_));
   problem_.close_scale();
   PetscCall(VecZeroEntries(velocity));

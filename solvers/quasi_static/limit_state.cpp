@@ -20,13 +20,13 @@ constexpr double small_change = 1e-3;
 }  // namespace
 
 template <int dim>
-PetscErrorCode LimitState<dim>::setup(double load_time, double time) {
+PetscErrorCode LimitState<dim>::setup(double load_time, double time, double share) {
   bool solved;
   PetscFunctionBeginUser;
-  load_time_ = load_time, time_ = time;
+  load_time_ = load_time, time_ = time, share_ = share;
   for (Vector *v : {&x_, &trial_, &direction_, &force_, &of_prop_, &start_, &mechanism_})
     PetscCall(problem_.soil().nodes().global_vector(*v));
-  PetscCall(problem_.prepare(1, load_time, time, 0, x_));
+  PetscCall(problem_.prepare(share, load_time, time, 0, x_));
   PetscCall(problem_.stiffness(0, 1));
   PetscCall(MatDuplicate(problem_.matrix(), MAT_COPY_VALUES, elastic_.create()));
   PetscCall(problem_.solve_linear(problem_.loads(), direction_, &solved));
@@ -79,10 +79,10 @@ PetscErrorCode LimitState<dim>::line_search(double slope, double *step) {
   PetscFunctionReturn(0);
 }
 
-/// Newton's iterations for the propped soil, until what is out of balance is small against the force of the prop or
-/// altogether.
+/// Newton's iterations for the propped soil, until what is out of balance is small: a share `of_prop` of the force of
+/// the prop, or `of_scale` of all forces.
 template <int dim>
-PetscErrorCode LimitState<dim>::settle(int most, LimitSearch *result, bool *settled) {
+PetscErrorCode LimitState<dim>::settle(int most, double of_prop, double of_scale, LimitSearch *result, bool *settled) {
   double slope, step;
   bool solved;
   PetscFunctionBeginUser;
@@ -91,7 +91,7 @@ PetscErrorCode LimitState<dim>::settle(int most, LimitSearch *result, bool *sett
   for (int k = 0;; ++k) {
     const double scale = problem_.force_scale();
     if (problem_.iterated && scale > 0) problem_.iterated(result->iterations, residual_ / scale);
-    *settled = residual_ <= std::max(0.05 * prop_force_, 0.5 * small_residual * scale);
+    *settled = residual_ <= std::max(of_prop * prop_force_, of_scale * scale);
     if (*settled || k == most || stop_asked()) PetscFunctionReturn(0);
     PetscCall(problem_.stiffness(1, prop_));
     PetscCall(problem_.solve_linear(force_, direction_, &solved));
@@ -112,7 +112,7 @@ PetscErrorCode LimitState<dim>::settle_on_bases(int most, LimitSearch *result, b
   const int last = result->iterations + most;
   for (int k = 0; k < most_changes; ++k) {
     double change;
-    PetscCall(settle(last - result->iterations, result, settled));
+    PetscCall(settle(last - result->iterations, 0.05, 0.5 * small_residual, result, settled));
     if (!*settled || stop_asked()) PetscFunctionReturn(0);
     PetscCall(problem_.bases().follow_normal_forces(&change));
     if (change <= small_change) PetscFunctionReturn(0);
@@ -126,7 +126,7 @@ PetscErrorCode LimitState<dim>::search(LimitSearch *result) {
   bool settled;
   PetscFunctionBeginUser;
   *result = {};
-  PetscCall(problem_.prepare(1, load_time_, time_, 0, x_));
+  PetscCall(problem_.prepare(share_, load_time_, time_, 0, x_));
   prop_ = first_prop;
   PetscCall(evaluate(x_));
   problem_.close_scale();

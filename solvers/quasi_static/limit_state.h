@@ -39,9 +39,9 @@ class LimitState {
   /// Bodies and loads must not change while it exists; strength may.
   explicit LimitState(QuasiStatic<dim> &problem) : problem_(problem) {}
 
-  /// Prepares searches under the loads of `load_time`: finds the displacement of elastic soil, to which displacements
-  /// are compared. Collective.
-  PetscErrorCode setup(double load_time, double time);
+  /// Prepares searches under the loads of `load_time` at `share` of the path: finds the displacement of elastic soil,
+  /// to which displacements are compared. Collective.
+  PetscErrorCode setup(double load_time, double time, double share = 1);
   /// Searches from the state of the problem. An equilibrium is committed (with the history of the laws unchanged); in
   /// every other case the problem keeps its state. Collective.
   PetscErrorCode search(LimitSearch *result);
@@ -49,6 +49,9 @@ class LimitState {
   /// Sources: Otter, Cassell & Hobbs (1966), Proc. Inst. Civ. Eng. 35; Cundall (1987), in Analytical and Computational
   /// Methods in Engineering Rock Mechanics. Docs/theory/finite_elements.md section 5.
   PetscErrorCode move(LimitSearch *result);  // damped_motion.cpp
+  /// The same by creep, in many small parts of the way: each is held by a prop that stands where the part begins, so
+  /// that the soil comes to rest or goes on. What is left out of balance in equilibrium is `small` of the forces.
+  PetscErrorCode creep(double small, LimitSearch *result);  // creep.cpp
   /// Moves the soil along the mechanism that was found last, so far that its largest displacement is `size` [m].
   /// Collective.
   PetscErrorCode move_along(double size);
@@ -56,12 +59,12 @@ class LimitState {
  private:
   bool stop_asked() const { return problem_.stop_asked && problem_.stop_asked(); }
   PetscErrorCode evaluate(::Vec x);
-  PetscErrorCode settle(int most_iterations, LimitSearch *result, bool *settled);
+  PetscErrorCode settle(int most_iterations, double of_prop, double of_scale, LimitSearch *result, bool *settled);
   PetscErrorCode settle_on_bases(int most_iterations, LimitSearch *result, bool *settled);
   PetscErrorCode line_search(double slope, double *step);
 
   QuasiStatic<dim> &problem_;
-  double load_time_ = 0, time_ = 0;
+  double load_time_ = 0, time_ = 0, share_ = 1;
   double elastic_displacement_ = 0;  ///< of a node at most [m]
   double prop_ = 0;                  ///< alpha: stiffness of the prop over the elastic stiffness [-]
   double residual_ = 0;              ///< size of the out-of-balance force of the propped soil [N]

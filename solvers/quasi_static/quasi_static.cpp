@@ -121,6 +121,8 @@ PetscErrorCode QuasiStatic<dim>::snes_jacobian(SNES, ::Vec, Mat, Mat, void *prob
 
 /// Force out of balance over the forces that act, beyond which iterates do not come back.
 constexpr double ran_away = 1e4;
+/// Iterations that do not halve the least force out of balance so far go round in circles.
+constexpr int most_in_vain = 8;
 
 template <int dim>
 PetscErrorCode QuasiStatic<dim>::snes_converged(SNES, PetscInt iteration, PetscReal, PetscReal, PetscReal norm,
@@ -131,11 +133,12 @@ PetscErrorCode QuasiStatic<dim>::snes_converged(SNES, PetscInt iteration, PetscR
   problem.balanced_ = norm <= problem.scene_.quasi_static->tolerance * problem.force_scale_;
   if (iteration == 0) problem.scale_open_ = false;  // an iterate that goes astray must not widen what counts as small
   if (problem.iterated && problem.force_scale_ > 0) problem.iterated(iteration, norm / problem.force_scale_);
+  if (iteration == 0 || norm < problem.least_ / 2) problem.least_ = norm, problem.since_ = 0;
   if (!std::isfinite(norm))
     *reason = SNES_DIVERGED_FNORM_NAN;
   else if (problem.balanced_)
     *reason = SNES_CONVERGED_FNORM_RELATIVE;
-  else if (norm > ran_away * problem.force_scale_)
+  else if (norm > ran_away * problem.force_scale_ || ++problem.since_ > most_in_vain)
     *reason = SNES_DIVERGED_DTOL;
   else if (problem.stop_asked && problem.stop_asked())
     problem.stopped_ = true, *reason = SNES_DIVERGED_DTOL;
@@ -264,7 +267,8 @@ PetscErrorCode QuasiStatic<dim>::advance(double share, double load_time, double 
     if (!balanced_) PetscCall(make_solver());
     PetscFunctionReturn(0);
   };
-  const auto ended = [&] { return balanced_ || stopped_ || !outcome->moving.empty(); };
+  const bool creeps = share_ == 0 && may_creep(softening);  // nothing of the path is borne that could show what moves
+  const auto ended = [&] { return balanced_ || stopped_ || creeps || !outcome->moving.empty(); };
   PetscCall(search(SNESLINESEARCHCP));
   const bool bare = share_ == 0;  // contact opens and closes at many nodes
   if (!ended() && (bare || !bases_.any())) {
@@ -280,6 +284,12 @@ PetscErrorCode QuasiStatic<dim>::advance(double share, double load_time, double 
   outcome->converged = balanced_, outcome->stopped = stopped_;
   if (outcome->converged) PetscCall(commit(x_, softening));
   PetscFunctionReturn(0);
+}
+
+template <int dim>
+bool QuasiStatic<dim>::may_creep(bool softening) const {
+  const auto loses_strength = [](const GaussPoints<dim> &p) { return p.present && softens(p.law); };
+  return !bases_.any() && !supports_.moves() && !(softening && std::ranges::any_of(soil_.points(), loses_strength));
 }
 
 template <int dim>

@@ -77,6 +77,9 @@ class QuasiStatic {
   /// Solves for the state at `share` of the path, with loads of `load_time`; prescribed motion acts over (time, time +
   /// dt). The state is committed if it converges, else left as it was.
   PetscErrorCode advance(double share, double load_time, double time, double dt, bool softening, StepOutcome *outcome);
+  /// May soil creep where the iterations of `advance` lead nowhere, see LimitState? Its strength and its supports then
+  /// stay what they are.
+  bool may_creep(bool softening) const;
   /// The parts of `advance`, for problems with more unknowns than displacement (flow_step.h): what stands before the
   /// iterations, `x` being where they start; the out-of-balance force, with the tangent then in `matrix`; and the
   /// acceptance of what was found.
@@ -104,14 +107,14 @@ class QuasiStatic {
   struct State {
     typename SoilElements<dim>::State soil;
     typename BaseContact<dim>::State bases;
-    double share;
+    double share, load_time;
     Vec<dim> borne_acceleration;
     PathWork work;
   };
-  State save() const { return {soil_.save(), bases_.save(), share_, borne_acceleration_, work_}; }
+  State save() const { return {soil_.save(), bases_.save(), share_, load_time_, borne_acceleration_, work_}; }
   void restore(const State &state) {
     soil_.restore(state.soil), bases_.restore(state.bases), work_ = state.work;
-    share_ = state.share, borne_acceleration_ = state.borne_acceleration;
+    share_ = state.share, load_time_ = state.load_time, borne_acceleration_ = state.borne_acceleration;
   }
   const PathWork &work() const { return work_; }
   void set_work(const PathWork &work) { work_ = work; }
@@ -181,6 +184,8 @@ class QuasiStatic {
   /// Whether the last iterate is in equilibrium. PETSc's reason is not enough: its search for a critical point calls an
   /// iterate that went astray converged where force and step are perpendicular.
   bool balanced_ = false;
+  double least_ = 0;  ///< out-of-balance force that counts as an advance of the iterations, halved with each [N]
+  int since_ = 0;     ///< iterations since the last advance
   bool direct_ = true, stopped_ = false;
   std::vector<char> present_;  ///< bodies
   LeftOut<dim> left_out_;

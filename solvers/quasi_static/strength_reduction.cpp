@@ -13,25 +13,27 @@ namespace talus {
 
 PetscErrorCode follow_path(double step, double smallest,
                            const std::function<PetscErrorCode(double, double, StepOutcome *)> &advance,
-                           const std::function<PetscErrorCode(StepOutcome *)> &find_failure,
+                           const std::function<PetscErrorCode(StepOutcome *)> &decide,
                            const std::function<void(double, const StepOutcome &)> &done, double *share,
                            StepOutcome *outcome, int *iterations) {
-  constexpr int quick = 6, doubtful = 2;  // iterations of a step, steps that failed
+  constexpr int quick = 6;  // iterations of a step
   PetscFunctionBeginUser;
   const double largest = step;
-  int failed = 0;
+  bool asked = !decide;
   *share = 0, *iterations = 0;
   while (*share < 1) {
-    const double to = *share + step > 1 - 1e-9 ? 1 : *share + step;
+    double to = *share + step > 1 - 1e-9 ? 1 : *share + step;
     PetscCall(advance(*share, to, outcome));
     *iterations += outcome->iterations;
-    if (outcome->stopped) PetscFunctionReturn(0);
+    if (!outcome->converged && !outcome->stopped && !asked) {
+      asked = true;
+      PetscCall(decide(outcome));
+      *iterations += outcome->iterations;
+      if (outcome->converged) to = 1;
+    }
+    if (outcome->stopped || outcome->fails) PetscFunctionReturn(0);
     if (!outcome->converged) {
       if (step / 2 < smallest) PetscFunctionReturn(0);
-      if (++failed == doubtful && find_failure) {
-        PetscCall(find_failure(outcome));
-        if (outcome->fails || outcome->stopped) PetscFunctionReturn(0);
-      }
       step /= 2;
       continue;
     }
@@ -42,11 +44,21 @@ PetscErrorCode follow_path(double step, double smallest,
   PetscFunctionReturn(0);
 }
 
+namespace {
+
+void take(const LimitSearch &found, StepOutcome *outcome) {
+  outcome->iterations += found.iterations;
+  outcome->converged = found.verdict == LimitVerdict::equilibrium;
+  outcome->fails = found.verdict == LimitVerdict::mechanism;
+  outcome->stopped = found.verdict == LimitVerdict::interrupted;
+  if (outcome->converged) outcome->residual = found.residual, outcome->largest = found.displacement;
+}
+
+/// A search with psi = phi under the loads of `load_time`; the problem is left in an equilibrium that it finds.
 template <int dim>
-PetscErrorCode find_failure(QuasiStatic<dim> &problem, const std::vector<Law> &laws, double load_time, double time,
-                            StepOutcome *outcome) {
+PetscErrorCode search_associated(QuasiStatic<dim> &problem, const std::vector<Law> &laws, double load_time, double time,
+                                 StepOutcome *outcome) {
   PetscFunctionBeginUser;
-  const auto before = problem.save();
   TrialStrength<dim> strength(problem.soil(), problem.bases(), laws);
   strength.set(1, TrialFlow::associated);
   LimitState<dim> limit(problem);
@@ -54,51 +66,59 @@ PetscErrorCode find_failure(QuasiStatic<dim> &problem, const std::vector<Law> &l
   PetscCall(limit.setup(load_time, time));
   PetscCall(limit.search(&found));
   strength.restore();
+  take(found, outcome);
+  PetscFunctionReturn(0);
+}
+
+}  // namespace
+
+template <int dim>
+PetscErrorCode find_failure(QuasiStatic<dim> &problem, const std::vector<Law> &laws, double load_time, double time,
+                            StepOutcome *outcome) {
+  PetscFunctionBeginUser;
+  const auto before = problem.save();
+  outcome->iterations = 0;
+  PetscCall(search_associated(problem, laws, load_time, time, outcome));
   problem.restore(before);
-  outcome->fails = found.verdict == LimitVerdict::mechanism;
-  outcome->stopped = found.verdict == LimitVerdict::interrupted;
+  outcome->converged = false;
   PetscFunctionReturn(0);
 }
 
 template <int dim>
-PetscErrorCode settle_propped(QuasiStatic<dim> &problem, const std::vector<Law> &laws, double load_time, double time,
-                              bool *dilated, StepOutcome *outcome) {
+PetscErrorCode creep_to(QuasiStatic<dim> &problem, double share, double load_time, double time, double tolerance,
+                        StepOutcome *outcome) {
   PetscFunctionBeginUser;
-  *dilated = false;
-  const auto before = problem.save();
   LimitState<dim> limit(problem);
   LimitSearch found;
-  outcome->iterations = 0;
-  const auto search = [&]() -> PetscErrorCode {
-    PetscFunctionBeginUser;
-    PetscCall(limit.setup(load_time, time));
-    PetscCall(limit.search(&found));
-    outcome->iterations += found.iterations;
-    outcome->converged = found.verdict == LimitVerdict::equilibrium;
-    outcome->fails = found.verdict == LimitVerdict::mechanism;
-    outcome->stopped = found.verdict == LimitVerdict::interrupted;
-    PetscFunctionReturn(0);
-  };
-  PetscCall(search());
-  if (!outcome->converged && !outcome->stopped) {
-    problem.restore(before);
-    TrialStrength<dim> strength(problem.soil(), problem.bases(), laws);
-    strength.set(1, TrialFlow::associated);
-    PetscCall(search());
-    strength.restore();
-    *dilated = outcome->converged;
-  }
+  PetscCall(limit.setup(load_time, time, share));
+  PetscCall(limit.creep(tolerance, &found));
+  take(found, outcome);
+  outcome->fails = false;  // less of the loads may do
+  PetscFunctionReturn(0);
+}
+
+template <int dim>
+PetscErrorCode settle(QuasiStatic<dim> &problem, const std::vector<Law> &laws, double load_time, double time,
+                      double tolerance, bool *dilated, StepOutcome *outcome) {
+  PetscFunctionBeginUser;
+  const auto before = problem.save();
+  outcome->iterations = 0, *dilated = false;
+  PetscCall(creep_to(problem, 1, load_time, time, tolerance, outcome));
+  if (outcome->converged || outcome->stopped) PetscFunctionReturn(0);
+  PetscCall(search_associated(problem, laws, load_time, time, outcome));
+  *dilated = outcome->converged;
   if (!outcome->converged) problem.restore(before);
-  if (outcome->converged) outcome->residual = found.residual, outcome->largest = found.displacement;
   PetscFunctionReturn(0);
 }
 
 template PetscErrorCode find_failure(QuasiStatic<2> &, const std::vector<Law> &, double, double, StepOutcome *);
 template PetscErrorCode find_failure(QuasiStatic<3> &, const std::vector<Law> &, double, double, StepOutcome *);
-template PetscErrorCode settle_propped(QuasiStatic<2> &, const std::vector<Law> &, double, double, bool *,
-                                       StepOutcome *);
-template PetscErrorCode settle_propped(QuasiStatic<3> &, const std::vector<Law> &, double, double, bool *,
-                                       StepOutcome *);
+template PetscErrorCode creep_to(QuasiStatic<2> &, double, double, double, double, StepOutcome *);
+template PetscErrorCode creep_to(QuasiStatic<3> &, double, double, double, double, StepOutcome *);
+template PetscErrorCode settle(QuasiStatic<2> &, const std::vector<Law> &, double, double, double, bool *,
+                               StepOutcome *);
+template PetscErrorCode settle(QuasiStatic<3> &, const std::vector<Law> &, double, double, double, bool *,
+                               StepOutcome *);
 
 namespace {
 
@@ -141,6 +161,7 @@ class Reduction {
   }
 
   PetscErrorCode attempt(double factor, TrialOutcome *outcome, bool *interrupted) {
+    constexpr double long_way = 1.1;  // from the factor of the last equilibrium: the soil creeps there
     PetscFunctionBeginUser;
     const auto begin = std::chrono::steady_clock::now();
     StrengthTrial trial;
@@ -148,11 +169,14 @@ class Reduction {
     const bool energy = flow_ != TrialFlow::own;
     PetscCall(attempt_from(stable_, &LimitState<dim>::search, &trial, interrupted));
     const auto open = [&] { return trial.outcome == TrialOutcome::undecided && !*interrupted; };
-    if (!energy && trial.outcome == TrialOutcome::mechanism) trial.outcome = TrialOutcome::undecided;
+    // soil with psi < phi follows a mechanism that is a small step away, and takes a smaller step before others
+    const bool near = any_stable_ && narrow(stable_factor_, factor);
+    if (!energy && !near && trial.outcome == TrialOutcome::mechanism) trial.outcome = TrialOutcome::undecided;
     // from the first state too, where the last one leads nowhere
     if (open() && energy && any_stable_) PetscCall(attempt_from(start_, &LimitState<dim>::search, &trial, interrupted));
-    // soil with psi < phi takes a smaller step first
-    const bool last = energy || !any_stable_ || narrow(stable_factor_, factor);
+    const bool last = energy || near || !any_stable_;
+    if (open() && !energy && settings_.by_damped_motion && factor > long_way * stable_factor_)
+      PetscCall(attempt_from(stable_, &Reduction::creep, &trial, interrupted));
     if (open() && last && settings_.by_damped_motion)
       PetscCall(attempt_from(stable_, &LimitState<dim>::move, &trial, interrupted));
     else if (open() && last && !energy)
@@ -167,13 +191,14 @@ class Reduction {
     PetscFunctionReturn(0);
   }
 
-  using Way = PetscErrorCode (LimitState<dim>::*)(LimitSearch *);
-  PetscErrorCode attempt_from(const State &state, Way way, StrengthTrial *trial, bool *interrupted) {
+  using Way = std::function<PetscErrorCode(LimitState<dim> &, LimitSearch *)>;
+  static PetscErrorCode creep(LimitState<dim> &limit, LimitSearch *found) { return limit.creep(small_residual, found); }
+  PetscErrorCode attempt_from(const State &state, const Way &way, StrengthTrial *trial, bool *interrupted) {
     PetscFunctionBeginUser;
     LimitSearch found;
     problem_.restore(state);
     strength_.set(trial->factor, flow_);
-    PetscCall((limit_.*way)(&found));
+    PetscCall(way(limit_, &found));
     trial->iterations += found.iterations, trial->steps += found.steps;
     trial->residual = found.residual, trial->surplus = found.surplus, trial->displacement = found.displacement;
     trial->curve = std::move(found.curve);

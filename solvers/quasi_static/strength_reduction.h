@@ -10,12 +10,12 @@
 namespace talus {
 
 /// Carries a path from share 0 to 1 in load steps of at most `step`, halved where they fail and doubled after quick
-/// ones; `done` is told of each. `find_failure`, where it is given, is asked once, after the second step that failed:
-/// the path ends if it finds that the soil fails. Returns the outcome of the last step and, in `share`, how far it
-/// came.
+/// ones; `done` is told of each. `decide`, where it is given, is asked once, after the first step that failed: it may
+/// find the equilibrium at the end of the path, or that the soil fails there. Returns the outcome of the last step and,
+/// in `share`, how far it came.
 PetscErrorCode follow_path(double step, double smallest,
                            const std::function<PetscErrorCode(double from, double to, StepOutcome *)> &advance,
-                           const std::function<PetscErrorCode(StepOutcome *)> &find_failure,
+                           const std::function<PetscErrorCode(StepOutcome *)> &decide,
                            const std::function<void(double share, const StepOutcome &)> &done, double *share,
                            StepOutcome *outcome, int *iterations);
 
@@ -26,14 +26,17 @@ template <int dim>
 PetscErrorCode find_failure(QuasiStatic<dim> &problem, const std::vector<Law> &laws, double load_time, double time,
                             StepOutcome *outcome);
 
-/// Searches for an equilibrium under all loads of `load_time` from the present state by the iterations of a strength
-/// reduction: an elastic prop that becomes softer and softer guides them where Newton's iterations along a path of
-/// loads went astray. Soil moves with the dilation that it has or, if that leads nowhere, with psi = phi, which sets
-/// `dilated`: its strength is the same, so that it bears the stress that is found. If `outcome->converged`, the problem
-/// is in that state, else in the one before; `fails` says that soil with psi = phi fails. Supports must not move.
+/// Lets the soil creep to an equilibrium under the loads of `load_time` at `share` of the path, where Newton's
+/// iterations went astray. The problem is left in the equilibrium if there is one, else in the state before.
 template <int dim>
-PetscErrorCode settle_propped(QuasiStatic<dim> &problem, const std::vector<Law> &laws, double load_time, double time,
-                              bool *dilated, StepOutcome *outcome);
+PetscErrorCode creep_to(QuasiStatic<dim> &problem, double share, double load_time, double time, double tolerance,
+                        StepOutcome *outcome);
+
+/// The same under all loads; or else, with psi = phi, by the search of a strength reduction, which sets `dilated`: the
+/// strength of such soil is the same, so that it bears the stress that is found. `fails` says that it fails even so.
+template <int dim>
+PetscErrorCode settle(QuasiStatic<dim> &problem, const std::vector<Law> &laws, double load_time, double time,
+                      double tolerance, bool *dilated, StepOutcome *outcome);
 
 /// What a strength reduction needs of its surroundings.
 template <int dim>

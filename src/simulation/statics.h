@@ -76,7 +76,7 @@ class Statics {
   /// Elements of first order make factors too large: a scene that looks for one has always those of second order.
   Elements elements() const;
   std::vector<std::string> lost_stages;  ///< names of stages that lost equilibrium, in a run that leads to a factor
-  bool dilated = false;                  ///< a stage found its equilibrium with psi = phi, see settle_propped
+  bool dilated = false;                  ///< a stage found its equilibrium with psi = phi, see `settle`
   /// What motion had done to the soil when the stage under way began.
   struct Moved {
     double way = 0, speed = 0;  ///< of the particle that has moved farthest, and of the fastest [m], [m/s]

@@ -18,20 +18,31 @@ class EquilibriumStage final : public StaticStage<dim> {
   void follow(Path &path) override {
     const Stage &stage = this->stage_;
     QuasiStatic<dim> &problem = this->run_.statics.problem();
-    const auto advance = [&](double from, double to, StepOutcome *outcome) {
+    const std::vector<Law> &laws = this->run_.world.laws;
+    const double tolerance = this->run_.scene.quasi_static->tolerance, &time = this->run_.clock.time;
+    const bool may_creep = problem.may_creep(stage.softening), at_once = may_creep && first();
+    const auto advance = [&](double from, double to, StepOutcome *outcome) -> PetscErrorCode {
       const double before = this->load_at(from), after = this->load_at(to);
-      return problem.advance(to, after, before, after - before, stage.softening, outcome);
+      PetscFunctionBeginUser;
+      PetscCall(problem.advance(to, after, before, after - before, stage.softening, outcome));
+      const bool ended = outcome->converged || outcome->stopped || !outcome->moving.empty();
+      if (ended || !may_creep || at_once) PetscFunctionReturn(0);
+      PetscCall(creep_to(problem, to, after, time, tolerance, outcome));
+      PetscFunctionReturn(0);
     };
-    // a trial of the factor finds it sooner than small steps do; friction of a base has no bound by psi = phi
-    std::function<PetscErrorCode(StepOutcome *)> failure;
-    if (this->run_.leads_to_factor() && !on_base())
-      failure = [&](StepOutcome *outcome) {
-        return find_failure(problem, this->run_.world.laws, this->load_at(1), this->run_.clock.time, outcome);
+    std::function<PetscErrorCode(StepOutcome *)> decide;
+    if (at_once)
+      decide = [&](StepOutcome *outcome) -> PetscErrorCode {
+        PetscFunctionBeginUser;
+        PetscCall(settle(problem, laws, this->load_at(1), time, tolerance, &this->run_.statics.dilated, outcome));
+        if (outcome->converged) left_at_ = path.share;
+        PetscFunctionReturn(0);
       };
+    else if (this->run_.leads_to_factor() && !on_base())  // friction of a base has no bound by psi = phi
+      decide = [&](StepOutcome *outcome) { return find_failure(problem, laws, this->load_at(1), time, outcome); };
     require(follow_path(
-        1. / this->keys_.load_steps, this->run_.scene.quasi_static->smallest_step, advance, failure,
+        1. / this->keys_.load_steps, this->run_.scene.quasi_static->smallest_step, advance, decide,
         [&](double share, const StepOutcome &) { this->done(share); }, &path.share, &path.last, &path.iterations));
-    if (path.share < 1 && may_settle(path)) settle(path);
   }
   bool on_base() const {
     return std::ranges::any_of(this->run_.world.conditions.sources(),
@@ -39,29 +50,19 @@ class EquilibriumStage final : public StaticStage<dim> {
   }
   /// In the first stage the share of gravity that was reached says nothing of the soil, and so long as no strength is
   /// lost, another way to the state under all of it will do. Later stages end where their loads find no equilibrium.
-  bool may_settle(const Path &path) const {
+  bool first() const {
     const bool may_go_on = this->keys_.when_lost != WhenLost::stop && !this->run_.leads_to_factor();
-    const bool loses_strength = this->stage_.softening && std::ranges::any_of(this->run_.world.laws, softens);
-    return this->run_.progress.number == 0 && this->run_.scene.start_from->folder.empty() && !may_go_on &&
-           !loses_strength && !path.last.stopped && !path.last.fails && !on_base() &&
-           !this->run_.statics.problem().supports().moves();
-  }
-  void settle(Path &path) {
-    left_at_ = path.share;
-    require(settle_propped(this->run_.statics.problem(), this->run_.world.laws, this->load_at(1), this->run_.clock.time,
-                           &this->run_.statics.dilated, &path.last));
-    path.iterations += path.last.iterations;
-    if (path.last.converged) path.share = 1, this->done(1);
+    return this->run_.progress.number == 0 && this->run_.scene.start_from->folder.empty() && !may_go_on;
   }
   void describe(const Path &path, std::ostream &text) override {
     this->describe_equilibrium(path, text);
     if (left_at_ >= 0)
-      text << "; its load steps ended at " << 100 * left_at_
-           << " %, and the rest came at once, against an elastic prop that was then taken away"
+      text << "; its load steps ended at " << 100 * left_at_ << " %, and the rest came at once, "
            << (this->run_.statics.dilated
-                   ? ", in soil that moved with psi = phi: it bears this stress with its own psi too, but lateral "
-                     "stress and displacements are those of soil that dilates"
-                   : ": displacements depend on this way more than stresses do")
+                   ? "against an elastic prop that was then taken away, in soil that moved with psi = phi: it bears "
+                     "this stress with its own psi too, but lateral stress and displacements are those of soil that "
+                     "dilates"
+                   : "under which the soil crept to rest: displacements depend on this way more than stresses do")
            << ". Other load_steps (here " << this->keys_.load_steps
            << ") may do without, and so may initial_stress = \"k0\"";
   }

@@ -45,7 +45,9 @@ TEST(QuasiStatic, soil_that_stands_is_found_where_newton_fails) {
   ASSERT_FALSE(solved.events.empty());
   const std::string &said = solved.events.back().text;
   EXPECT_NE(said.find("stage load is in equilibrium"), std::string::npos) << said;
-  EXPECT_NE(said.find("its load steps ended at 50 %"), std::string::npos) << said;
+  EXPECT_NE(said.find("its load steps ended at 0 %, and the rest came at once, under which the soil crept"),
+            std::string::npos)
+      << said;
   EXPECT_NEAR(solved.history.column("base_force_y_N").back(), 2000 * 10, 1e-3 * 2000 * 10);
   std::vector<std::string> weak = lost;
   weak[1] = "body.soil.cohesion=4e3";
