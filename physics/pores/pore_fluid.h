@@ -16,6 +16,7 @@
 #include "physics/boundary/pore_conditions.h"
 #include "physics/pores/drag.h"
 #include "physics/pores/fluids.h"
+#include "physics/pores/implicit_pressure.h"
 #include "physics/pores/pore_report.h"
 #include "physics/pores/soil_pores.h"
 #include "physics/pores/storage.h"
@@ -116,6 +117,18 @@ class PoreFluid {
   /// Finds the pressures of the points from their masses, and the sums over cells and nodes that the forces are made
   /// of. It may be left out before particles are released. Collective.
   PetscErrorCode update_pressures(const Frame &frame);
+
+  // Pressure implicit in time, theory of pores, section 8; `frame` is the accepted state, as a trial.
+  PetscErrorCode start_implicit(const Frame &frame, ImplicitPressure<dim> &of) const;
+  PetscErrorCode find_squeezed(const Frame &frame, const double *strain, double *pressure, double *stiffness,
+                               ImplicitPressure<dim> &of) const;
+  PetscErrorCode push_by(const Frame &frame, const PoreConditions<dim> &conditions, double step, const double *pressure,
+                         ImplicitPressure<dim> &of, Vec<dim> *velocity);
+  void find_mobility(const Frame &frame, double step, ImplicitPressure<dim> &of) const;
+  template <bool linear>
+  PetscErrorCode find_pore_strain(const Frame &frame, const PoreConditions<dim> &conditions, const Vec<dim> *u,
+                                  ImplicitPressure<dim> &of, double *strain);
+  PetscErrorCode find_diagonal(const Frame &frame, double step, ImplicitPressure<dim> &of) const;
 
   /// Suction at the points of a body [Pa].
   const double *suction(int body) const requires Phases::suction { return points_[body].suction.data(); }

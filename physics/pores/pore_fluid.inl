@@ -160,5 +160,6 @@ PetscErrorCode PoreFluid<dim, Phases>::ledger(bool gathered, FluidLedger *sums) 
 #include "physics/pores/pore_fluid/drag.inl"
 #include "physics/pores/pore_fluid/exchange.inl"
 #include "physics/pores/pore_fluid/forces.inl"
+#include "physics/pores/pore_fluid/implicit.inl"
 #include "physics/pores/pore_fluid/pressures.inl"
 #include "physics/pores/pore_fluid/remap.inl"

@@ -29,6 +29,9 @@ IntegratorSettings choose_integrator(const Scene &scene) {
   if (scene.water->storage == PoreStorage::rate && !(phases.suction && !phases.gas && by_euler))
     scene.complain("water.storage",
                    "can be \"rate\" only with phases = \"unsaturated\" and integrator.kind = \"euler\"; leave it out");
+  if (scene.water->pressure == PoreIntegration::at_end && !(phases.liquid && !phases.suction && by_euler))
+    scene.complain("water.pressure",
+                   "can be \"implicit\" only with phases = \"saturated\" and integrator.kind = \"euler\"; leave it out");
   if (!phases.liquid) return settings;
   if (const std::string problem = drag_problem(settings); !problem.empty())
     scene.complain("integrator.kind", "must be \"euler\", or \"arkode\" of order 3, where pore fluids move: " +

@@ -1,0 +1,154 @@
+// Pressure that is implicit in time; theory of pores, section 8; included only where PoreFluid is instantiated.
+#include <algorithm>
+#include <cmath>
+
+#include "physics/pores/pore_fluid.h"
+
+namespace talus {
+
+/// Stiffness and pressure of the water in the cells, and the volumes of the nodes, at the start of a step. Collective.
+template <int dim, class Phases>
+PetscErrorCode PoreFluid<dim, Phases>::start_implicit(const Frame &frame, ImplicitPressure<dim> &of) const {
+  PetscFunctionBeginUser;
+  const int nodes = frame.grid.node_count(), cells = frame.grid.cell_count();
+  std::fill_n(of.volume.begin(), nodes, 0.);
+  for (int c = 0; c < cells; ++c) {
+    const CellPores &cell = cells_[c];
+    const double pores = cell.mass[0] / (cell.density[0] * cell.saturation * frame.particle_volume[c]);
+    of.modulus[c] = cell.density[0] / (liquid_.density_slope(cell.density[0]) * pores);
+    of.unbounded[c] = cell.pressure[0] - of.modulus[c] * pores * (1 - cell.saturation);
+    for (int i : frame.shape[c].node) of.volume[i] += frame.weight[c] / (dim + 1);
+  }
+  PetscCall(frame.grid.sum(of.volume.data(), 1));
+  PetscFunctionReturn(0);
+}
+
+/// Mean pressure that the cells of a node have once its strain has squeezed their pores, and its slope. Collective.
+template <int dim, class Phases>
+PetscErrorCode PoreFluid<dim, Phases>::find_squeezed(const Frame &frame, const double *strain, double *pressure,
+                                                     double *stiffness, ImplicitPressure<dim> &of) const {
+  PetscFunctionBeginUser;
+  constexpr double vapour = 1e3;  // [Pa]: stiffness of pores that cavitate
+  const int nodes = frame.grid.node_count();
+  std::fill_n(of.sums.begin(), 2 * nodes, 0.);
+  for (int c = 0; c < frame.grid.cell_count(); ++c) {
+    const double part = frame.weight[c] / (dim + 1);
+    for (int i : frame.shape[c].node) {
+      const double p = of.unbounded[c] - of.modulus[c] * strain[i];
+      of.sums[2 * i] += part * std::max(p, cavitation_pressure);
+      of.sums[2 * i + 1] += part * (p > cavitation_pressure ? of.modulus[c] : vapour);
+    }
+  }
+  PetscCall(frame.grid.sum(of.sums.data(), 2));
+  for (int i = 0; i < nodes; ++i)
+    pressure[i] = of.sums[2 * i] / of.volume[i], stiffness[i] = of.sums[2 * i + 1] / of.volume[i];
+  PetscFunctionReturn(0);
+}
+
+/// Adds to velocities [1 + fluids][nodes] what nodal pressures add to them in a step without drag: a cell has the mean
+/// pressure of its nodes. Collective.
+template <int dim, class Phases>
+PetscErrorCode PoreFluid<dim, Phases>::push_by(const Frame &frame, const PoreConditions<dim> &conditions, double step,
+                                               const double *pressure, ImplicitPressure<dim> &of,
+                                               Vec<dim> *velocity) {
+  PetscFunctionBeginUser;
+  const FilledGrid<dim> &grid = frame.grid;
+  const int nodes = grid.node_count();
+  std::fill_n(of.push.begin(), nodes, Vec<dim>{});
+  for (int c = 0; c < grid.cell_count(); ++c) {
+    const Shape<dim> &shape = frame.shape[c];
+    double mean = 0;
+    for (int i : shape.node) mean += pressure[i];
+    mean *= frame.weight[c] / (dim + 1);
+    Vec<dim> first{};
+    for (int k = 0; k < dim; ++k)
+      for (int d = 0; d < dim; ++d) {
+        const double f = mean * shape.gradient[k][d];
+        of.push[shape.node[k + 1]][d] += f, first[d] -= f;
+      }
+    add_scaled<dim>(of.push[shape.node[0]], 1, first);
+  }
+  PetscCall(frame.grid.sum(of.push[0].data(), dim));
+  double *beyond_gap = of.sums.data();
+  std::fill_n(beyond_gap, nodes, 0.);
+  for (const auto &[i, c, k] : conditions.gap_cells()) {
+    double mean = 0;
+    for (int j : frame.shape[c].node) mean += pressure[j] / (dim + 1);
+    beyond_gap[i] += frame.weight[c] * reference_[c][k] * mean;
+  }
+  PetscCall(frame.grid.sum(beyond_gap, 1));
+  for (int i = 0; i < nodes; ++i) {
+    if (!(grid.mass[i] > 0 && nodes_[i].whole(0) > 0)) continue;
+    Vec<dim> on_liquid = of.push[i];
+    add_scaled<dim>(on_liquid, -beyond_gap[i], gap_[i]);
+    add_scaled<dim>(velocity[nodes + i], step / nodes_[i].whole(0), on_liquid);
+    add_scaled<dim>(velocity[i], step / grid.mass[i], of.push[i]);
+    add_scaled<dim>(velocity[i], -step / grid.mass[i] * nodes_[i].mass(0) / nodes_[i].whole(0), on_liquid);
+  }
+  PetscFunctionReturn(0);
+}
+
+/// Velocity along an impulse of the pressure at the nodes, with drag over a step.
+template <int dim, class Phases>
+void PoreFluid<dim, Phases>::find_mobility(const Frame &frame, double step, ImplicitPressure<dim> &of) const {
+  for (int i = 0; i < frame.grid.node_count(); ++i) {
+    const NodalFluid at = over_step(i, 0);
+    const double share = at.whole_mass > 0 ? at.mass / at.whole_mass : 0, mass = frame.grid.mass[i];
+    double solid = mass > 0 ? (1 - share) / mass : 0, liquid = at.whole_mass > 0 ? 1 / at.whole_mass : 0;
+    if (mass > 0) resolve_drag<1>(step, mass, solid, &at, &liquid);
+    of.mobility[i] = (1 - share) * solid + share * liquid;
+  }
+}
+
+/// Strain of the pores at the nodes over displacements u [1 + fluids][nodes], theory of pores (8.3); `linear`: its part
+/// that is linear in u, with the weights of the forces. Collective.
+template <int dim, class Phases>
+template <bool linear>
+PetscErrorCode PoreFluid<dim, Phases>::find_pore_strain(const Frame &frame, const PoreConditions<dim> &conditions,
+                                                        const Vec<dim> *u, ImplicitPressure<dim> &of, double *strain) {
+  PetscFunctionBeginUser;
+  const int nodes = frame.grid.node_count();
+  PetscCall(find_divergence(frame, conditions, u));
+  std::fill_n(strain, nodes, 0.);
+  for (int c = 0; c < frame.grid.cell_count(); ++c) {
+    const Shape<dim> &shape = frame.shape[c];
+    Square<dim> g = Square<dim>::Zero();
+    for (int k = 0; k < dim; ++k)
+      for (int i = 0; i < dim; ++i)
+        for (int j = 0; j < dim; ++j)
+          g(i, j) += (u[shape.node[k + 1]][i] - u[shape.node[0]][i]) * shape.gradient[k][j];
+    const double own = linear ? g.trace() : std::log((Square<dim>::Identity() + g).determinant());
+    const double apart = divergence_[0][c] / cells_[c].density[0];
+    const double part = frame.weight[c] / (dim + 1);
+    const double sum = part * (own + (linear ? 1 : frame.weight[c] / frame.particle_volume[c]) * apart);
+    for (int i : shape.node) strain[i] += sum;
+  }
+  PetscCall(frame.grid.sum(strain, 1));
+  for (int i = 0; i < nodes; ++i) strain[i] /= of.volume[i];
+  PetscFunctionReturn(0);
+}
+
+/// Diagonal of the operator of the solve, but for what neighbouring cells of a node cancel. Collective.
+template <int dim, class Phases>
+PetscErrorCode PoreFluid<dim, Phases>::find_diagonal(const Frame &frame, double step, ImplicitPressure<dim> &of) const {
+  PetscFunctionBeginUser;
+  const int nodes = frame.grid.node_count();
+  std::fill_n(of.diagonal.begin(), nodes, 0.);
+  for (int c = 0; c < frame.grid.cell_count(); ++c) {
+    const Shape<dim> &shape = frame.shape[c];
+    const double part = step * frame.weight[c] / (dim + 1);
+    Vec<dim> first{};
+    double sum = 0;
+    for (int k = 0; k < dim; ++k) {
+      add_scaled<dim>(first, -1, shape.gradient[k]);
+      sum += of.mobility[shape.node[k + 1]] * dot<dim>(shape.gradient[k], shape.gradient[k]);
+    }
+    sum += of.mobility[shape.node[0]] * dot<dim>(first, first);
+    for (int i : shape.node) of.diagonal[i] += part * part * sum;
+  }
+  PetscCall(frame.grid.sum(of.diagonal.data(), 1));
+  for (int i = 0; i < nodes; ++i) of.diagonal[i] += of.volume[i] / of.stiffness[i];
+  PetscFunctionReturn(0);
+}
+
+}  // namespace talus
