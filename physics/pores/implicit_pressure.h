@@ -13,8 +13,8 @@ struct ImplicitPressure {
 
   ImplicitPressure(bool acts, int nodes, int cells, int fields) : acts(acts), gradients(acts ? nodes : 0) {
     if (!acts) return;
-    for (Array *field : {&volume, &increment, &start, &residual, &stiffness, &diagonal, &strain, &given, &correction,
-                         &mobility})
+    for (Array *field :
+         {&volume, &particle_volume, &acting, &held, &strain, &given, &residual, &stiffness, &correction, &mobility, &diagonal})
       make_room(*field, nodes);
     make_room(sums, 3 * static_cast<size_t>(nodes));
     for (Array *field : {&modulus, &unbounded}) make_room(*field, cells);
@@ -29,13 +29,14 @@ struct ImplicitPressure {
   Array unbounded;  ///< pressure by the content, also below that of cavitation [Pa]
   // nodes
   Array volume;      ///< sum of w / (d + 1) [m3]
-  Array start;       ///< pressure at the start of the step [Pa]
-  Array increment;   ///< that acts beside it [Pa]
-  Array residual;    ///< pressure after the strain of the step, minus that which acts [Pa]
-  Array stiffness;   ///< - dP over strain, of the cells that do not cavitate [Pa]
-  Array strain;      ///< of the pores in the step
-  Array given;       ///< strain by what supports prescribe
-  Array correction;  ///< of the increment [Pa]
+  Array particle_volume;  ///< sum of that of the particles over d + 1 [m3]
+  Array acting;      ///< pressure that acts in the step [Pa]
+  Array held;        ///< strain of the pores that has this pressure
+  Array strain;      ///< that of the step
+  Array given;       ///< that by what supports prescribe
+  Array residual;    ///< what the strain of the step lacks, times the volume [m3]
+  Array stiffness;   ///< - dP over strain [Pa]
+  Array correction;  ///< of the pressure that acts [Pa]
   Array mobility;    ///< velocity of water and grains against an impulse of the pressure [1/kg]
   Array diagonal, sums;
   std::vector<Vec<dim>> push;                             ///< sum of w p grad N [N]

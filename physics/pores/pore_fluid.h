@@ -120,8 +120,7 @@ class PoreFluid {
 
   // Pressure implicit in time, theory of pores, section 8; `frame` is the accepted state, as a trial.
   PetscErrorCode start_implicit(const Frame &frame, ImplicitPressure<dim> &of) const;
-  PetscErrorCode find_squeezed(const Frame &frame, const double *strain, double *pressure, double *stiffness,
-                               ImplicitPressure<dim> &of) const;
+  PetscErrorCode find_squeezed(const Frame &frame, double *pressure, ImplicitPressure<dim> &of) const;
   PetscErrorCode push_by(const Frame &frame, const PoreConditions<dim> &conditions, double step, const double *pressure,
                          ImplicitPressure<dim> &of, Vec<dim> *velocity);
   void find_mobility(const Frame &frame, double step, ImplicitPressure<dim> &of) const;
@@ -224,6 +223,7 @@ class PoreFluid {
   void set_masses_by_rate(const Frame &frame);
   template <class Hold>
   void limits(const Frame &frame, const PoreConditions<dim> &conditions, Hold &&hold) const;
+  PetscErrorCode spread_divergence(const Frame &frame, Array &divergence);
   PetscErrorCode share_divergence(const Frame &frame, Array &divergence) requires Phases::suction;
   PetscErrorCode share_pressure(const Frame &frame, Array &pressure) requires Phases::suction;
   /// Integration volume of a cell minus the volume of its particles; 0 in nearly full cells [m3].
@@ -250,7 +250,7 @@ class PoreFluid {
   [[no_unique_address]] If<Phases::gas, PoreGas> gas_;
   std::vector<SoilPores> soils_;
   PrescribedPressure<dim> pressure_;
-  bool bishop_, smoothing_, patches_, explicit_drag_, by_rate_;
+  bool bishop_, smoothing_, patches_, explicit_drag_, by_rate_, implicit_;
 
   std::vector<PorePoints> points_, next_points_, trial_;
   std::vector<CellPores> cells_, trial_cells_;

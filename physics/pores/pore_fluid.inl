@@ -23,6 +23,7 @@ PoreFluid<dim, Phases>::PoreFluid(const BackgroundMesh<dim> &mesh, std::vector<s
       patches_(scene.transfer->locking == Locking::patches),
       explicit_drag_(scene.water->drag == PoreDrag::at_start),
       by_rate_(scene.water->storage == PoreStorage::rate),
+      implicit_(scene.water->pressure == PoreIntegration::at_end),
       points_(bodies.size()),
       next_points_(bodies.size()),
       trial_(bodies.size()) {

@@ -32,9 +32,9 @@ template <int dim, class Phases>
 PetscErrorCode SoilMotion<dim, Phases>::add_implicit_pressure(double t, double gamma,
                                                               Vec<dim> *velocity) requires Phases::liquid {
   PetscFunctionBeginUser;
-  constexpr double tolerance = 1e-3;  // of the pressure that acts
+  constexpr double tolerance = 1e-2;  // of the pressure that acts
   constexpr double least = 1e-9;      // of the stiffness of the water
-  constexpr int most_rounds = 6, most_iterations = 500;
+  constexpr int most_rounds = 12, most_iterations = 500;
   const int nodes = grid_.node_count(), all = nodes * fields;
   ImplicitPressure<dim> &of = implicit_;
   auto frame = pore_frame(t, accepted_);
@@ -55,32 +55,39 @@ PetscErrorCode SoilMotion<dim, Phases>::add_implicit_pressure(double t, double g
     PetscCall(fluid_.template find_pore_strain<linear>(frame, pore_conditions_, of.mapped.data(), of, strain));
     PetscFunctionReturn(0);
   };
+  const auto squares = [&](auto &&...term) {  // sums over nodes of volume times the squares
+    std::array<double, sizeof...(term)> all{};
+    for (int i = 0; i < nodes; ++i)
+      if (mesh_.counted[grid_.mesh_node[i]]) {
+        size_t k = 0;
+        ((all[k++] += of.volume[i] * std::pow(term(i), 2)), ...);
+      }
+    MPI_Allreduce(MPI_IN_PLACE, all.data(), all.size(), MPI_DOUBLE, MPI_SUM, comm());
+    return all;
+  };
   PetscCall(fluid_.start_implicit(frame, of));
-  std::fill_n(of.strain.begin(), nodes, 0.);
-  PetscCall(fluid_.find_squeezed(frame, of.strain.data(), of.start.data(), of.stiffness.data(), of));
-  std::fill_n(of.increment.begin(), nodes, 0.);
+  std::fill_n(of.held.begin(), nodes, 0.);
+  PetscCall(fluid_.find_squeezed(frame, of.acting.data(), of));
   std::fill_n(of.before_drag.begin(), all, Vec<dim>{});
   PetscCall(strain_of.template operator()<true>(of.before_drag.data(), of.given.data()));
   for (int round = 0; round < most_rounds; ++round) {
-    PetscCall(strain_of.template operator()<false>(velocity, of.strain.data()));
-    PetscCall(fluid_.find_squeezed(frame, of.strain.data(), of.residual.data(), of.stiffness.data(), of));
-    double sums[3] = {};  // squares: of the residual, of the pressure that acts, of the least
-    for (int i = 0; i < nodes; ++i) {
-      const double acting = of.start[i] + of.increment[i];
-      of.residual[i] -= acting;
-      if (!mesh_.counted[grid_.mesh_node[i]]) continue;
-      sums[0] += of.volume[i] * of.residual[i] * of.residual[i];
-      sums[1] += of.volume[i] * acting * acting;
-      sums[2] += of.volume[i] * std::pow(least * of.stiffness[i], 2);
+    double *pressure = of.residual.data();
+    const auto sizes = squares([&](int i) { return of.acting[i]; }, [&](int i) { return least * of.stiffness[i]; });
+    const double allowed = tolerance * tolerance * sizes[0] + sizes[1];
+    for (int turn = 0; turn < most_rounds; ++turn) {  // piecewise linear
+      PetscCall(fluid_.find_squeezed(frame, pressure, of));
+      const auto apart = squares([&](int i) { return pressure[i] - of.acting[i]; });
+      if (apart[0] <= 1e-4 * allowed) break;
+      for (int i = 0; i < nodes; ++i) of.held[i] += (pressure[i] - of.acting[i]) / of.stiffness[i];
     }
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 3, MPI_DOUBLE, MPI_SUM, comm()));
-    const double allowed = tolerance * tolerance * sums[1] + sums[2];
+    PetscCall(strain_of.template operator()<false>(velocity, of.strain.data()));
+    const auto lacks = squares([&](int i) { return (of.held[i] - of.strain[i]) * of.stiffness[i]; });
     measures_.pressure_rounds = round;
-    if (sums[0] <= allowed) break;
+    if (lacks[0] <= allowed) break;
     fluid_.find_mobility(frame, gamma, of);
     PetscCall(fluid_.find_diagonal(frame, gamma, of));
-    for (int i = 0; i < nodes; ++i) of.residual[i] *= of.volume[i] / of.stiffness[i];
-    const double enough = std::max(0.1 * allowed, 1e-8 * sums[0]);
+    for (int i = 0; i < nodes; ++i) of.residual[i] = of.volume[i] * (of.held[i] - of.strain[i]);
+    const double enough = std::max(0.1 * allowed, 1e-5 * lacks[0]);
     int taken = 0;
     PetscCall(of.gradients.solve(
         nodes, of.diagonal.data(), of.residual.data(), of.correction.data(), most_iterations,
@@ -106,7 +113,8 @@ PetscErrorCode SoilMotion<dim, Phases>::add_implicit_pressure(double t, double g
         },
         &taken));
     measures_.pressure_iterations += taken;
-    for (int i = 0; i < nodes; ++i) of.increment[i] += of.correction[i];
+    if (std::getenv("IMP_DEBUG")) PetscPrintf(comm(), "  round %d residual %g allowed %g taken %d\n", round, std::sqrt(lacks[0]/sizes[0]), std::sqrt(allowed/sizes[0]), taken);
+    for (int i = 0; i < nodes; ++i) of.acting[i] += of.correction[i];
     PetscCall(fluid_.push_by(frame, pore_conditions_, gamma, of.correction.data(), of, velocity));
   }
   if (std::getenv("IMP_DEBUG")) PetscPrintf(comm(), "t %g rounds %d iterations %lld\n", t, measures_.pressure_rounds, measures_.pressure_iterations);

@@ -11,22 +11,25 @@ template <int dim, class Phases>
 PetscErrorCode PoreFluid<dim, Phases>::start_implicit(const Frame &frame, ImplicitPressure<dim> &of) const {
   PetscFunctionBeginUser;
   const int nodes = frame.grid.node_count(), cells = frame.grid.cell_count();
-  std::fill_n(of.volume.begin(), nodes, 0.);
+  std::fill_n(of.sums.begin(), 2 * nodes, 0.);
   for (int c = 0; c < cells; ++c) {
     const CellPores &cell = cells_[c];
     const double pores = cell.mass[0] / (cell.density[0] * cell.saturation * frame.particle_volume[c]);
     of.modulus[c] = cell.density[0] / (liquid_.density_slope(cell.density[0]) * pores);
     of.unbounded[c] = cell.pressure[0] - of.modulus[c] * pores * (1 - cell.saturation);
-    for (int i : frame.shape[c].node) of.volume[i] += frame.weight[c] / (dim + 1);
+    for (int i : frame.shape[c].node)
+      of.sums[2 * i] += frame.weight[c] / (dim + 1), of.sums[2 * i + 1] += frame.particle_volume[c] / (dim + 1);
   }
-  PetscCall(frame.grid.sum(of.volume.data(), 1));
+  PetscCall(frame.grid.sum(of.sums.data(), 2));
+  for (int i = 0; i < nodes; ++i) of.volume[i] = of.sums[2 * i], of.particle_volume[i] = of.sums[2 * i + 1];
   PetscFunctionReturn(0);
 }
 
-/// Mean pressure that the cells of a node have once its strain has squeezed their pores, and its slope. Collective.
+/// Mean pressure of the cells of a node once its strain `of.held` has squeezed their pores, into `pressure`, and its
+/// slope, into `of.stiffness`; below cavitation it falls with a little of it. Collective.
 template <int dim, class Phases>
-PetscErrorCode PoreFluid<dim, Phases>::find_squeezed(const Frame &frame, const double *strain, double *pressure,
-                                                     double *stiffness, ImplicitPressure<dim> &of) const {
+PetscErrorCode PoreFluid<dim, Phases>::find_squeezed(const Frame &frame, double *pressure,
+                                                     ImplicitPressure<dim> &of) const {
   PetscFunctionBeginUser;
   constexpr double vapour = 1e3;  // [Pa]: stiffness of pores that cavitate
   const int nodes = frame.grid.node_count();
@@ -34,14 +37,17 @@ PetscErrorCode PoreFluid<dim, Phases>::find_squeezed(const Frame &frame, const d
   for (int c = 0; c < frame.grid.cell_count(); ++c) {
     const double part = frame.weight[c] / (dim + 1);
     for (int i : frame.shape[c].node) {
-      const double p = of.unbounded[c] - of.modulus[c] * strain[i];
-      of.sums[2 * i] += part * std::max(p, cavitation_pressure);
-      of.sums[2 * i + 1] += part * (p > cavitation_pressure ? of.modulus[c] : vapour);
+      const double full = of.unbounded[c] - of.modulus[c] * of.held[i] - cavitation_pressure;
+      const double slope = full > 0 ? of.modulus[c] : vapour;
+      of.sums[2 * i] += part * full / of.modulus[c] * slope;
+      of.sums[2 * i + 1] += part * slope;
     }
   }
   PetscCall(frame.grid.sum(of.sums.data(), 2));
-  for (int i = 0; i < nodes; ++i)
-    pressure[i] = of.sums[2 * i] / of.volume[i], stiffness[i] = of.sums[2 * i + 1] / of.volume[i];
+  for (int i = 0; i < nodes; ++i) {
+    pressure[i] = cavitation_pressure + of.sums[2 * i] / of.volume[i];
+    of.stiffness[i] = of.sums[2 * i + 1] / of.volume[i];
+  }
   PetscFunctionReturn(0);
 }
 
@@ -109,7 +115,7 @@ PetscErrorCode PoreFluid<dim, Phases>::find_pore_strain(const Frame &frame, cons
   PetscFunctionBeginUser;
   const int nodes = frame.grid.node_count();
   PetscCall(find_divergence(frame, conditions, u));
-  std::fill_n(strain, nodes, 0.);
+  std::fill_n(of.sums.begin(), 2 * nodes, 0.);
   for (int c = 0; c < frame.grid.cell_count(); ++c) {
     const Shape<dim> &shape = frame.shape[c];
     Square<dim> g = Square<dim>::Zero();
@@ -118,13 +124,12 @@ PetscErrorCode PoreFluid<dim, Phases>::find_pore_strain(const Frame &frame, cons
         for (int j = 0; j < dim; ++j)
           g(i, j) += (u[shape.node[k + 1]][i] - u[shape.node[0]][i]) * shape.gradient[k][j];
     const double own = linear ? g.trace() : std::log((Square<dim>::Identity() + g).determinant());
-    const double apart = divergence_[0][c] / cells_[c].density[0];
-    const double part = frame.weight[c] / (dim + 1);
-    const double sum = part * (own + (linear ? 1 : frame.weight[c] / frame.particle_volume[c]) * apart);
-    for (int i : shape.node) strain[i] += sum;
+    const double apart = divergence_[0][c] / cells_[c].density[0], part = frame.weight[c] / (dim + 1);
+    for (int i : shape.node) of.sums[2 * i] += part * own, of.sums[2 * i + 1] += part * apart;
   }
-  PetscCall(frame.grid.sum(strain, 1));
-  for (int i = 0; i < nodes; ++i) strain[i] /= of.volume[i];
+  PetscCall(frame.grid.sum(of.sums.data(), 2));
+  for (int i = 0; i < nodes; ++i)
+    strain[i] = of.sums[2 * i] / of.volume[i] + of.sums[2 * i + 1] / (linear ? of.volume : of.particle_volume)[i];
   PetscFunctionReturn(0);
 }
 
