@@ -153,8 +153,7 @@ class SoilMotion final : public AnySoilMotion<dim> {
   typename Conditions<dim>::Pores contact(double t, double gamma);
   void constrain(double t, Vec<dim> *v);
   PetscErrorCode map_change(double gamma, const Vec<dim> *velocity, Vec<dim> *mapped) requires Phases::liquid;
-  PetscErrorCode velocity_of_step(double t, double gamma, const Vec<dim> *before_drag,
-                                  bool change) requires Phases::liquid;
+  PetscErrorCode find_strain_of_step(double t, double gamma, const Vec<dim> *velocity) requires Phases::liquid;
   PetscErrorCode add_implicit_pressure(double t, double gamma, Vec<dim> *velocity) requires Phases::liquid;
   PetscErrorCode to_particles_and_back(const Vec<dim> *in, Vec<dim> *out);
   typename PoreFluid<dim, Phases>::Frame pore_frame(double t, const State &state) requires Phases::liquid;

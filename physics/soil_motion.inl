@@ -46,8 +46,8 @@ SoilMotion<dim, Phases>::SoilMotion(const MotionParts<dim> &parts)
       fastest_mode_(parts.mesh, smallest_mass_, pores_of_bodies(parts)),
       rayleigh_(parts.mesh, parts.bodies),
       fluid_(parts.mesh, parts.bodies, parts.scene),
-      implicit_(parts.scene.water->pressure == PoreIntegration::at_end, parts.mesh.node_count(), parts.mesh.cell_count(),
-                fields) {
+      implicit_(parts.scene.water->pressure == PoreIntegration::at_end, parts.mesh.node_count(),
+                parts.mesh.cell_count()) {
   const int nodes = parts.mesh.node_count();
   make_room(force_, nodes), make_room(scratch_, static_cast<size_t>(nodes) * fields);
   make_room(nodal_, static_cast<size_t>(nodes) * nodal_sums);

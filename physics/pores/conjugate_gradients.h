@@ -17,26 +17,24 @@ class ConjugateGradients {
   }
 
   /// Solves A x = b on `nodes` nodes, from x = 0. `diagonal` approximates that of A; `apply`(x, y) finds y = A x;
-  /// `sum`(a, b) is a scalar product over all ranks; `small`(r) tells whether a residual is small enough. Stops after
-  /// `most` iterations, or where A is not positive definite. `taken`: number of iterations. Collective.
-  template <class Apply, class Sum, class Small>
+  /// `product`(a, b) is a scalar product over all ranks; `sizes`(r, z) gives that of the residual r and z, and a measure
+  /// of r, at which the solve ends once it is at most `enough`. It ends too after `most` iterations, and where A is not
+  /// positive definite. `taken`: number of iterations. Collective.
+  template <class Apply, class Product, class Sizes>
   PetscErrorCode solve(int nodes, const double *diagonal, const double *b, double *x, int most, Apply &&apply,
-                       Sum &&sum, Small &&small, int *taken) {
+                       Product &&product, Sizes &&sizes, double enough, int *taken) {
     PetscFunctionBeginUser;
-    double *r = residual_.data(), *p = direction_.data(), *q = image_.data(), weighted = 0;
+    double *r = residual_.data(), *p = direction_.data(), *q = image_.data();
     for (int i = 0; i < nodes; ++i) x[i] = 0, r[i] = b[i], p[i] = b[i] / diagonal[i];
-    PetscCall(sum(r, p, &weighted));
+    double weighted = product(r, p);
     for (*taken = 0; *taken < most && weighted > 0; ++*taken) {
-      double curvature = 0, next = 0;
       PetscCall(apply(p, q));
-      PetscCall(sum(p, q, &curvature));
+      const double curvature = product(p, q);
       if (!(curvature > 0)) break;
       const double step = weighted / curvature;
       for (int i = 0; i < nodes; ++i) x[i] += step * p[i], r[i] -= step * q[i], q[i] = r[i] / diagonal[i];
-      PetscCall(sum(r, q, &next));
-      bool enough = false;
-      PetscCall(small(r, &enough));
-      if (enough) break;
+      const auto [next, size] = sizes(r, q);
+      if (size <= enough) break;
       for (int i = 0; i < nodes; ++i) p[i] = q[i] + next / weighted * p[i];
       weighted = next;
     }

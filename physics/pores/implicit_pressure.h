@@ -1,9 +1,12 @@
 #pragma once
-/// Pore pressure that is implicit in time, docs/theory/pores.md section 8: what its solve keeps at nodes and cells.
+/// Pore pressure that is implicit in time, docs/theory/pores.md section 8: what its solve keeps at nodes and cells, and
+/// the operator of the solve.
 #include <vector>
 
 #include "base/room.h"
+#include "physics/boundary/prescribed_motion.h"
 #include "physics/pores/conjugate_gradients.h"
+#include "transfer/mass_matrix.h"
 
 namespace talus {
 
@@ -11,36 +14,53 @@ template <int dim>
 struct ImplicitPressure {
   using Array = std::vector<double>;
 
-  ImplicitPressure(bool acts, int nodes, int cells, int fields) : acts(acts), gradients(acts ? nodes : 0) {
+  ImplicitPressure(bool acts, int nodes, int cells) : acts(acts), gradients(acts ? nodes : 0) {
     if (!acts) return;
-    for (Array *field :
-         {&volume, &particle_volume, &acting, &held, &strain, &given, &residual, &stiffness, &correction, &mobility, &diagonal})
+    for (Array *field : {&volume, &particle_volume, &acting, &held, &strain, &residual, &stiffness, &correction,
+                         &diagonal, &solid, &apart, &porosity})
       make_room(*field, nodes);
-    make_room(sums, 3 * static_cast<size_t>(nodes));
+    make_room(sums, 2 * static_cast<size_t>(nodes));
     for (Array *field : {&modulus, &unbounded}) make_room(*field, cells);
-    for (auto *field : {&before_drag, &after_drag, &mapped}) make_room(*field, static_cast<size_t>(nodes) * fields);
+    for (auto *field : {&after_drag, &mapped}) make_room(*field, 2 * static_cast<size_t>(nodes));
     make_room(push, nodes);
+    walls.reserve(nodes);
   }
+
+  /// y = A x for pressures x at the nodes [Pa], theory of pores (8.5): the volume that the pores of the nodes lack after
+  /// the strain by their forces in a step [m3]. `shape` and `weight` of the cells. Collective.
+  PetscErrorCode apply(FilledGrid<dim> &grid, const PrescribedMotion<dim> &supports, const Shape<dim> *shape,
+                       const double *weight, double step, const double *x, double *y);
+  /// Its diagonal, but for what cells around a node cancel. Collective.
+  PetscErrorCode find_diagonal(FilledGrid<dim> &grid, const Shape<dim> *shape, const double *weight, double step);
+  /// Sum of w p grad N at the nodes for pressures p of nodes, of which a cell has the mean, into `push`. Collective.
+  PetscErrorCode find_push(FilledGrid<dim> &grid, const Shape<dim> *shape, const double *weight, const double *pressure);
+
+  /// A node at which boundaries fix the motion of the liquid against the skeleton.
+  struct Wall {
+    int node;
+    PrescribedDirections<dim> along;
+  };
 
   bool acts;
   ConjugateGradients gradients;
   // cells
-  Array modulus;    ///< dP over the volume strain of pores that are squeezed: K / n [Pa]
+  Array modulus;    ///< - dP over the strain of the pores: K / n [Pa]
   Array unbounded;  ///< pressure by the content, also below that of cavitation [Pa]
   // nodes
-  Array volume;      ///< sum of w / (d + 1) [m3]
-  Array particle_volume;  ///< sum of that of the particles over d + 1 [m3]
-  Array acting;      ///< pressure that acts in the step [Pa]
-  Array held;        ///< strain of the pores that has this pressure
-  Array strain;      ///< that of the step
-  Array given;       ///< that by what supports prescribe
-  Array residual;    ///< what the strain of the step lacks, times the volume [m3]
-  Array stiffness;   ///< - dP over strain [Pa]
-  Array correction;  ///< of the pressure that acts [Pa]
-  Array mobility;    ///< velocity of water and grains against an impulse of the pressure [1/kg]
+  Array volume;           ///< sum of w / (d + 1) [m3]
+  Array particle_volume;  ///< the same of the volumes of the particles [m3]
+  Array acting;           ///< pressure that acts in the step [Pa]
+  Array held;             ///< strain of the pores that has this pressure
+  Array strain;           ///< that of the step
+  Array residual;         ///< what the strain of the step lacks, times the volume [m3]
+  Array stiffness;        ///< - dP over strain [Pa]
+  Array correction;       ///< of the pressure that acts [Pa]
+  Array solid, apart;     ///< velocity of the skeleton, and of the liquid against it, over an impulse of `push` [1/kg]
+  Array porosity;         ///< share of `push` on the liquid
   Array diagonal, sums;
-  std::vector<Vec<dim>> push;                             ///< sum of w p grad N [N]
-  std::vector<Vec<dim>> before_drag, after_drag, mapped;  ///< velocities [field][node] [m/s]
+  std::vector<Vec<dim>> push;                ///< sum of w p grad N [N]
+  std::vector<Vec<dim>> after_drag, mapped;  ///< velocities [field][node] [m/s]
+  std::vector<Wall> walls;
 };
 
 }  // namespace talus

@@ -123,11 +123,10 @@ class PoreFluid {
   PetscErrorCode find_squeezed(const Frame &frame, double *pressure, ImplicitPressure<dim> &of) const;
   PetscErrorCode push_by(const Frame &frame, const PoreConditions<dim> &conditions, double step, const double *pressure,
                          ImplicitPressure<dim> &of, Vec<dim> *velocity);
-  void find_mobility(const Frame &frame, double step, ImplicitPressure<dim> &of) const;
-  template <bool linear>
+  void find_mobility(const Frame &frame, const PoreConditions<dim> &conditions, double step,
+                     ImplicitPressure<dim> &of) const;
   PetscErrorCode find_pore_strain(const Frame &frame, const PoreConditions<dim> &conditions, const Vec<dim> *u,
-                                  ImplicitPressure<dim> &of, double *strain);
-  PetscErrorCode find_diagonal(const Frame &frame, double step, ImplicitPressure<dim> &of) const;
+                                  ImplicitPressure<dim> &of);
 
   /// Suction at the points of a body [Pa].
   const double *suction(int body) const requires Phases::suction { return points_[body].suction.data(); }

@@ -51,8 +51,29 @@ PetscErrorCode PoreFluid<dim, Phases>::find_squeezed(const Frame &frame, double 
   PetscFunctionReturn(0);
 }
 
-/// Adds to velocities [1 + fluids][nodes] what nodal pressures add to them in a step without drag: a cell has the mean
-/// pressure of its nodes. Collective.
+/// What an impulse of the pressure moves at the nodes in a step with drag, and where boundaries hold the liquid.
+template <int dim, class Phases>
+void PoreFluid<dim, Phases>::find_mobility(const Frame &frame, const PoreConditions<dim> &conditions, double step,
+                                           ImplicitPressure<dim> &of) const {
+  for (int i = 0; i < frame.grid.node_count(); ++i) {
+    const NodalFluid at = over_step(i, 0);
+    const double mass = frame.grid.mass[i];
+    of.solid[i] = of.apart[i] = of.porosity[i] = 0;
+    if (!(mass > 0 && at.whole_mass > 0)) continue;
+    const double share = at.mass / at.whole_mass;
+    double solid = (1 - share) / mass, liquid = 1 / at.whole_mass;
+    resolve_drag<1>(step, mass, solid, &at, &liquid);
+    of.solid[i] = solid, of.apart[i] = liquid - solid, of.porosity[i] = share;
+  }
+  of.walls.clear();
+  limits(frame, conditions, [&](int i, FlowLimits<dim> &all) {
+    of.walls.push_back({i, {}});
+    for (int k = 0; k < all.count; ++k)
+      if (all.all[k].low == all.all[k].high) of.walls.back().along.add(all.all[k].n, 0);
+  });
+}
+
+/// Adds to velocities [1 + fluids][nodes] what nodal pressures add to them in a step without drag. Collective.
 template <int dim, class Phases>
 PetscErrorCode PoreFluid<dim, Phases>::push_by(const Frame &frame, const PoreConditions<dim> &conditions, double step,
                                                const double *pressure, ImplicitPressure<dim> &of,
@@ -60,21 +81,7 @@ PetscErrorCode PoreFluid<dim, Phases>::push_by(const Frame &frame, const PoreCon
   PetscFunctionBeginUser;
   const FilledGrid<dim> &grid = frame.grid;
   const int nodes = grid.node_count();
-  std::fill_n(of.push.begin(), nodes, Vec<dim>{});
-  for (int c = 0; c < grid.cell_count(); ++c) {
-    const Shape<dim> &shape = frame.shape[c];
-    double mean = 0;
-    for (int i : shape.node) mean += pressure[i];
-    mean *= frame.weight[c] / (dim + 1);
-    Vec<dim> first{};
-    for (int k = 0; k < dim; ++k)
-      for (int d = 0; d < dim; ++d) {
-        const double f = mean * shape.gradient[k][d];
-        of.push[shape.node[k + 1]][d] += f, first[d] -= f;
-      }
-    add_scaled<dim>(of.push[shape.node[0]], 1, first);
-  }
-  PetscCall(frame.grid.sum(of.push[0].data(), dim));
+  PetscCall(of.find_push(frame.grid, frame.shape, frame.weight, pressure));
   double *beyond_gap = of.sums.data();
   std::fill_n(beyond_gap, nodes, 0.);
   for (const auto &[i, c, k] : conditions.gap_cells()) {
@@ -94,65 +101,28 @@ PetscErrorCode PoreFluid<dim, Phases>::push_by(const Frame &frame, const PoreCon
   PetscFunctionReturn(0);
 }
 
-/// Velocity along an impulse of the pressure at the nodes, with drag over a step.
+/// Strain of the pores at the nodes over displacements u [1 + fluids][nodes], theory of pores (8.3). Collective.
 template <int dim, class Phases>
-void PoreFluid<dim, Phases>::find_mobility(const Frame &frame, double step, ImplicitPressure<dim> &of) const {
-  for (int i = 0; i < frame.grid.node_count(); ++i) {
-    const NodalFluid at = over_step(i, 0);
-    const double share = at.whole_mass > 0 ? at.mass / at.whole_mass : 0, mass = frame.grid.mass[i];
-    double solid = mass > 0 ? (1 - share) / mass : 0, liquid = at.whole_mass > 0 ? 1 / at.whole_mass : 0;
-    if (mass > 0) resolve_drag<1>(step, mass, solid, &at, &liquid);
-    of.mobility[i] = (1 - share) * solid + share * liquid;
-  }
-}
-
-/// Strain of the pores at the nodes over displacements u [1 + fluids][nodes], theory of pores (8.3); `linear`: its part
-/// that is linear in u, with the weights of the forces. Collective.
-template <int dim, class Phases>
-template <bool linear>
 PetscErrorCode PoreFluid<dim, Phases>::find_pore_strain(const Frame &frame, const PoreConditions<dim> &conditions,
-                                                        const Vec<dim> *u, ImplicitPressure<dim> &of, double *strain) {
+                                                        const Vec<dim> *u, ImplicitPressure<dim> &of) {
   PetscFunctionBeginUser;
   const int nodes = frame.grid.node_count();
   PetscCall(find_divergence(frame, conditions, u));
   std::fill_n(of.sums.begin(), 2 * nodes, 0.);
   for (int c = 0; c < frame.grid.cell_count(); ++c) {
     const Shape<dim> &shape = frame.shape[c];
-    Square<dim> g = Square<dim>::Zero();
+    Square<dim> g = Square<dim>::Identity();
     for (int k = 0; k < dim; ++k)
       for (int i = 0; i < dim; ++i)
         for (int j = 0; j < dim; ++j)
           g(i, j) += (u[shape.node[k + 1]][i] - u[shape.node[0]][i]) * shape.gradient[k][j];
-    const double own = linear ? g.trace() : std::log((Square<dim>::Identity() + g).determinant());
-    const double apart = divergence_[0][c] / cells_[c].density[0], part = frame.weight[c] / (dim + 1);
-    for (int i : shape.node) of.sums[2 * i] += part * own, of.sums[2 * i + 1] += part * apart;
+    const double part = frame.weight[c] / (dim + 1), own = part * std::log(g.determinant()),
+                 apart = part * divergence_[0][c] / cells_[c].density[0];
+    for (int i : shape.node) of.sums[2 * i] += own, of.sums[2 * i + 1] += apart;
   }
   PetscCall(frame.grid.sum(of.sums.data(), 2));
   for (int i = 0; i < nodes; ++i)
-    strain[i] = of.sums[2 * i] / of.volume[i] + of.sums[2 * i + 1] / (linear ? of.volume : of.particle_volume)[i];
-  PetscFunctionReturn(0);
-}
-
-/// Diagonal of the operator of the solve, but for what neighbouring cells of a node cancel. Collective.
-template <int dim, class Phases>
-PetscErrorCode PoreFluid<dim, Phases>::find_diagonal(const Frame &frame, double step, ImplicitPressure<dim> &of) const {
-  PetscFunctionBeginUser;
-  const int nodes = frame.grid.node_count();
-  std::fill_n(of.diagonal.begin(), nodes, 0.);
-  for (int c = 0; c < frame.grid.cell_count(); ++c) {
-    const Shape<dim> &shape = frame.shape[c];
-    const double part = step * frame.weight[c] / (dim + 1);
-    Vec<dim> first{};
-    double sum = 0;
-    for (int k = 0; k < dim; ++k) {
-      add_scaled<dim>(first, -1, shape.gradient[k]);
-      sum += of.mobility[shape.node[k + 1]] * dot<dim>(shape.gradient[k], shape.gradient[k]);
-    }
-    sum += of.mobility[shape.node[0]] * dot<dim>(first, first);
-    for (int i : shape.node) of.diagonal[i] += part * part * sum;
-  }
-  PetscCall(frame.grid.sum(of.diagonal.data(), 1));
-  for (int i = 0; i < nodes; ++i) of.diagonal[i] += of.volume[i] / of.stiffness[i];
+    of.strain[i] = of.sums[2 * i] / of.volume[i] + of.sums[2 * i + 1] / of.particle_volume[i];
   PetscFunctionReturn(0);
 }
 
