@@ -27,24 +27,47 @@ PetscErrorCode ImplicitPressure<dim>::find_push(FilledGrid<dim> &grid, const Sha
 }
 
 template <int dim>
+PetscErrorCode ImplicitPressure<dim>::find_beyond_gaps(FilledGrid<dim> &grid, const Shape<dim> *shape,
+                                                       const double *weight, const double *pressure) {
+  PetscFunctionBeginUser;
+  std::fill_n(beyond_gap.begin(), grid.node_count(), 0.);
+  for (const GapCorner &corner : gap_corners) {
+    double mean = 0;
+    for (int i : shape[corner.cell].node) mean += pressure[i] / (dim + 1);
+    beyond_gap[corner.node] += weight[corner.cell] * corner.share * mean;
+  }
+  PetscCall(grid.sum(beyond_gap.data(), 1));
+  PetscFunctionReturn(0);
+}
+
+template <int dim>
 PetscErrorCode ImplicitPressure<dim>::apply(FilledGrid<dim> &grid, const PrescribedMotion<dim> &supports,
                                             const Shape<dim> *shape, const double *weight, double step, const double *x,
                                             double *y) {
   PetscFunctionBeginUser;
   const int nodes = grid.node_count();
   PetscCall(find_push(grid, shape, weight, x));
+  PetscCall(find_beyond_gaps(grid, shape, weight, x));
   Vec<dim> *in = after_drag.data(), *out = mapped.data();
   const auto hold = [&](Vec<dim> *v) {
     for (const auto &p : supports.active()) p.condition->take_from(v[p.node]);
     for (const Wall &wall : walls) wall.along.take_from(v[nodes + wall.node]);
   };
   for (int i = 0; i < nodes; ++i)
-    for (int d = 0; d < dim; ++d) in[i][d] = solid[i] * push[i][d], in[nodes + i][d] = apart[i] * push[i][d];
+    for (int d = 0; d < dim; ++d) {
+      const double at_gap = beyond_gap[i] * gap[i][d];
+      in[i][d] = solid[i] * push[i][d] + gap_solid[i] * at_gap;
+      in[nodes + i][d] = apart[i] * push[i][d] + gap_apart[i] * at_gap;
+    }
   hold(in);
   PetscCall((to_particles_and_back<dim, 2>(grid, in, out)));
   hold(out);
-  for (int i = 0; i < nodes; ++i) add_scaled<dim>(out[i], porosity[i], out[nodes + i]);
   std::fill_n(y, nodes, 0.);
+  for (const GapCorner &corner : gap_corners) {
+    const double flux = porosity[corner.node] * dot<dim>(out[nodes + corner.node], gap[corner.node]);
+    for (int i : shape[corner.cell].node) y[i] -= weight[corner.cell] * corner.share / (dim + 1) * flux;
+  }
+  for (int i = 0; i < nodes; ++i) add_scaled<dim>(out[i], porosity[i], out[nodes + i]);
   for (int c = 0; c < grid.cell_count(); ++c) {
     const auto &node = shape[c].node;
     double divergence = 0;

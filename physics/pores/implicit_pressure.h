@@ -17,13 +17,13 @@ struct ImplicitPressure {
   ImplicitPressure(bool acts, int nodes, int cells) : acts(acts), gradients(acts ? nodes : 0) {
     if (!acts) return;
     for (Array *field : {&volume, &particle_volume, &acting, &held, &strain, &residual, &stiffness, &correction,
-                         &diagonal, &solid, &apart, &porosity})
+                         &diagonal, &solid, &apart, &porosity, &gap_solid, &gap_apart, &beyond_gap})
       make_room(*field, nodes);
     make_room(sums, 2 * static_cast<size_t>(nodes));
     for (Array *field : {&modulus, &unbounded}) make_room(*field, cells);
     for (auto *field : {&after_drag, &mapped}) make_room(*field, 2 * static_cast<size_t>(nodes));
     make_room(push, nodes);
-    walls.reserve(nodes);
+    walls.reserve(nodes), gap_corners.reserve((dim + 1) * static_cast<size_t>(cells));
   }
 
   /// y = A x for pressures x at the nodes [Pa], theory of pores (8.5): the volume that the pores of the nodes lack after
@@ -35,10 +35,20 @@ struct ImplicitPressure {
   /// Sum of w p grad N at the nodes for pressures p of nodes, of which a cell has the mean, into `push`. Collective.
   PetscErrorCode find_push(FilledGrid<dim> &grid, const Shape<dim> *shape, const double *weight, const double *pressure);
 
+  /// Sum of the pressures of the cells at the gaps times their shares, into `beyond_gap` [N m]. Collective.
+  PetscErrorCode find_beyond_gaps(FilledGrid<dim> &grid, const Shape<dim> *shape, const double *weight,
+                                  const double *pressure);
+
   /// A node at which boundaries fix the motion of the liquid against the skeleton.
   struct Wall {
     int node;
     PrescribedDirections<dim> along;
+  };
+
+  /// A corner of a cell at a gap between particles, and its share of the weight of the cell.
+  struct GapCorner {
+    int node, cell;
+    double share;
   };
 
   bool acts;
@@ -61,6 +71,10 @@ struct ImplicitPressure {
   std::vector<Vec<dim>> push;                ///< sum of w p grad N [N]
   std::vector<Vec<dim>> after_drag, mapped;  ///< velocities [field][node] [m/s]
   std::vector<Wall> walls;
+  std::vector<GapCorner> gap_corners;
+  const Vec<dim> *gap = nullptr;  ///< of a node: area of the gap over volume, theory of pores (5.1) [1/m]
+  Array gap_solid, gap_apart;     ///< as `solid` and `apart`, over an impulse of a gap, which liquid and grains share
+  Array beyond_gap;               ///< scratch at nodes
 };
 
 }  // namespace talus

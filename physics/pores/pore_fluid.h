@@ -121,8 +121,8 @@ class PoreFluid {
   // Pressure implicit in time, theory of pores, section 8; `frame` is the accepted state, as a trial.
   PetscErrorCode start_implicit(const Frame &frame, ImplicitPressure<dim> &of) const;
   PetscErrorCode find_squeezed(const Frame &frame, double *pressure, ImplicitPressure<dim> &of) const;
-  PetscErrorCode push_by(const Frame &frame, const PoreConditions<dim> &conditions, double step, const double *pressure,
-                         ImplicitPressure<dim> &of, Vec<dim> *velocity);
+  PetscErrorCode push_by(const Frame &frame, double step, const double *pressure, ImplicitPressure<dim> &of,
+                         Vec<dim> *velocity) const;
   void find_mobility(const Frame &frame, const PoreConditions<dim> &conditions, double step,
                      ImplicitPressure<dim> &of) const;
   PetscErrorCode find_pore_strain(const Frame &frame, const PoreConditions<dim> &conditions, const Vec<dim> *u,

@@ -56,7 +56,6 @@ PetscErrorCode SoilMotion<dim, Phases>::add_implicit_pressure(double t, double g
   PetscCall(fluid_.start_implicit(frame, of));
   std::fill_n(of.held.begin(), nodes, 0.);
   PetscCall(fluid_.find_squeezed(frame, of.acting.data(), of));
-  fluid_.find_mobility(frame, pore_conditions_, gamma, of);
   for (int round = 0; round < most_rounds; ++round) {
     double *pressure = of.residual.data();
     const auto sizes = sum([&](int i) { return of.volume[i] * square(of.acting[i]); },
@@ -72,6 +71,7 @@ PetscErrorCode SoilMotion<dim, Phases>::add_implicit_pressure(double t, double g
     const auto lacks = sum([&](int i) { return of.volume[i] * square((of.held[i] - of.strain[i]) * of.stiffness[i]); });
     measures_.pressure_rounds = round;
     if (lacks[0] <= allowed) break;
+    if (round == 0) fluid_.find_mobility(frame, pore_conditions_, gamma, of);  // once the gaps are known
     PetscCall(of.find_diagonal(grid_, shape, weight, gamma));
     for (int i = 0; i < nodes; ++i) of.residual[i] = of.volume[i] * (of.held[i] - of.strain[i]);
     const double enough = std::max(0.1 * allowed, 1e-5 * lacks[0]);
@@ -89,7 +89,17 @@ PetscErrorCode SoilMotion<dim, Phases>::add_implicit_pressure(double t, double g
         enough, &taken));
     measures_.pressure_iterations += taken;
     for (int i = 0; i < nodes; ++i) of.acting[i] += of.correction[i];
-    PetscCall(fluid_.push_by(frame, pore_conditions_, gamma, of.correction.data(), of, velocity));
+    PetscCall(fluid_.push_by(frame, gamma, of.correction.data(), of, velocity));
+    if (std::getenv("IMP_DEBUG") && round == 3) {
+      double lo = 1e9, hi = 0, worst = 0; int w = 0;
+      for (int i = 0; i < nodes; ++i) {
+        const double al = of.volume[i] / of.particle_volume[i];
+        lo = std::min(lo, al), hi = std::max(hi, al);
+        const double x = of.volume[i] * square((of.held[i] - of.strain[i]) * of.stiffness[i]);
+        if (x > worst) worst = x, w = i;
+      }
+      PetscPrintf(comm(), "alpha %g %g gaps %d worst node %d at %g %g share %g alpha %g mass %g volume %g\n", lo, hi, (int)pore_conditions_.gap_cells().size(), w, grid_.position[w][0], grid_.position[w][1], worst / lacks[0], of.volume[w] / of.particle_volume[w], grid_.mass[w], of.volume[w]);
+    }
     if (std::getenv("IMP_DEBUG")) PetscPrintf(comm(), "  round %d residual %g allowed %g taken %d\n", round, std::sqrt(lacks[0]/sizes[0]), std::sqrt(allowed/sizes[0]), taken);
   }
   if (std::getenv("IMP_DEBUG")) PetscPrintf(comm(), "t %g rounds %d iterations %lld\n", t, measures_.pressure_rounds, measures_.pressure_iterations);

@@ -58,13 +58,19 @@ void PoreFluid<dim, Phases>::find_mobility(const Frame &frame, const PoreConditi
   for (int i = 0; i < frame.grid.node_count(); ++i) {
     const NodalFluid at = over_step(i, 0);
     const double mass = frame.grid.mass[i];
-    of.solid[i] = of.apart[i] = of.porosity[i] = 0;
+    of.solid[i] = of.apart[i] = of.porosity[i] = of.gap_solid[i] = of.gap_apart[i] = 0;
     if (!(mass > 0 && at.whole_mass > 0)) continue;
     const double share = at.mass / at.whole_mass;
     double solid = (1 - share) / mass, liquid = 1 / at.whole_mass;
     resolve_drag<1>(step, mass, solid, &at, &liquid);
     of.solid[i] = solid, of.apart[i] = liquid - solid, of.porosity[i] = share;
+    if (gap_[i] == Vec<dim>{}) continue;
+    solid = share / mass, liquid = -1 / at.whole_mass;
+    resolve_drag<1>(step, mass, solid, &at, &liquid);
+    of.gap_solid[i] = solid, of.gap_apart[i] = liquid - solid;
   }
+  of.gap = gap_.data(), of.gap_corners.clear();
+  for (const auto &[i, c, k] : conditions.gap_cells()) of.gap_corners.push_back({i, c, reference_[c][k]});
   of.walls.clear();
   limits(frame, conditions, [&](int i, FlowLimits<dim> &all) {
     of.walls.push_back({i, {}});
@@ -75,25 +81,17 @@ void PoreFluid<dim, Phases>::find_mobility(const Frame &frame, const PoreConditi
 
 /// Adds to velocities [1 + fluids][nodes] what nodal pressures add to them in a step without drag. Collective.
 template <int dim, class Phases>
-PetscErrorCode PoreFluid<dim, Phases>::push_by(const Frame &frame, const PoreConditions<dim> &conditions, double step,
-                                               const double *pressure, ImplicitPressure<dim> &of,
-                                               Vec<dim> *velocity) {
+PetscErrorCode PoreFluid<dim, Phases>::push_by(const Frame &frame, double step, const double *pressure,
+                                               ImplicitPressure<dim> &of, Vec<dim> *velocity) const {
   PetscFunctionBeginUser;
   const FilledGrid<dim> &grid = frame.grid;
   const int nodes = grid.node_count();
   PetscCall(of.find_push(frame.grid, frame.shape, frame.weight, pressure));
-  double *beyond_gap = of.sums.data();
-  std::fill_n(beyond_gap, nodes, 0.);
-  for (const auto &[i, c, k] : conditions.gap_cells()) {
-    double mean = 0;
-    for (int j : frame.shape[c].node) mean += pressure[j] / (dim + 1);
-    beyond_gap[i] += frame.weight[c] * reference_[c][k] * mean;
-  }
-  PetscCall(frame.grid.sum(beyond_gap, 1));
+  PetscCall(of.find_beyond_gaps(frame.grid, frame.shape, frame.weight, pressure));
   for (int i = 0; i < nodes; ++i) {
     if (!(grid.mass[i] > 0 && nodes_[i].whole(0) > 0)) continue;
     Vec<dim> on_liquid = of.push[i];
-    add_scaled<dim>(on_liquid, -beyond_gap[i], gap_[i]);
+    add_scaled<dim>(on_liquid, -of.beyond_gap[i], gap_[i]);
     add_scaled<dim>(velocity[nodes + i], step / nodes_[i].whole(0), on_liquid);
     add_scaled<dim>(velocity[i], step / grid.mass[i], of.push[i]);
     add_scaled<dim>(velocity[i], -step / grid.mass[i] * nodes_[i].mass(0) / nodes_[i].whole(0), on_liquid);
