@@ -17,9 +17,9 @@ class ConjugateGradients {
   }
 
   /// Solves A x = b on `nodes` nodes, from x = 0. `diagonal` approximates that of A; `apply`(x, y) finds y = A x;
-  /// `product`(a, b) is a scalar product over all ranks; `sizes`(r, z) gives that of the residual r and z, and a measure
-  /// of r, at which the solve ends once it is at most `enough`. It ends too after `most` iterations, and where A is not
-  /// positive definite. `taken`: number of iterations. Collective.
+  /// `product`(a, b) is a scalar product over all ranks; `sizes`(r, z) gives that of the residual r and z, and a
+  /// measure of r, at which the solve ends once it is at most `enough`. It ends too after `most` iterations, and where
+  /// A is not positive definite. `taken`: number of iterations. Collective.
   template <class Apply, class Product, class Sizes>
   PetscErrorCode solve(int nodes, const double *diagonal, const double *b, double *x, int most, Apply &&apply,
                        Product &&product, Sizes &&sizes, double enough, int *taken) {

@@ -49,9 +49,8 @@ PetscErrorCode ImplicitPressure<dim>::apply(FilledGrid<dim> &grid, const Prescri
   PetscCall(find_push(grid, shape, weight, x));
   PetscCall(find_beyond_gaps(grid, shape, weight, x));
   Vec<dim> *in = after_drag.data(), *out = mapped.data();
-  const auto hold = [&](Vec<dim> *v) {
-    for (const auto &p : supports.active()) p.condition->take_from(v[p.node]);
-    for (const Wall &wall : walls) wall.along.take_from(v[nodes + wall.node]);
+  const auto stop_at_walls = [&](Vec<dim> *liquid) {
+    for (const Wall &wall : walls) wall.along.take_from(liquid[wall.node]);
   };
   for (int i = 0; i < nodes; ++i)
     for (int d = 0; d < dim; ++d) {
@@ -59,9 +58,23 @@ PetscErrorCode ImplicitPressure<dim>::apply(FilledGrid<dim> &grid, const Prescri
       in[i][d] = solid[i] * push[i][d] + gap_solid[i] * at_gap;
       in[nodes + i][d] = apart[i] * push[i][d] + gap_apart[i] * at_gap;
     }
-  hold(in);
+  for (const auto &p : supports.active())  // where a support holds the skeleton, drag acts against what does not move
+    for (int k = 0; k < p.condition->count; ++k) {
+      const Vec<dim> &n = p.condition->direction[k];
+      Vec<dim> &grains = in[p.node], &liquid = in[nodes + p.node];
+      const double on_liquid = dot<dim>(push[p.node], n) - beyond_gap[p.node] * dot<dim>(gap[p.node], n);
+      add_scaled<dim>(grains, -dot<dim>(grains, n), n);
+      add_scaled<dim>(liquid, supported[p.node] * on_liquid - dot<dim>(liquid, n), n);
+    }
+  stop_at_walls(in + nodes);
   PetscCall((to_particles_and_back<dim, 2>(grid, in, out)));
-  hold(out);
+  for (const auto &p : supports.active())
+    for (int k = 0; k < p.condition->count; ++k) {
+      const double speed = dot<dim>(out[p.node], p.condition->direction[k]);
+      add_scaled<dim>(out[p.node], -speed, p.condition->direction[k]);
+      add_scaled<dim>(out[nodes + p.node], speed, p.condition->direction[k]);
+    }
+  stop_at_walls(out + nodes);
   std::fill_n(y, nodes, 0.);
   for (const GapCorner &corner : gap_corners) {
     const double flux = porosity[corner.node] * dot<dim>(out[nodes + corner.node], gap[corner.node]);
@@ -94,7 +107,8 @@ PetscErrorCode ImplicitPressure<dim>::find_diagonal(FilledGrid<dim> &grid, const
     Vec<dim> first{};
     double sum = 0;
     const auto add = [&](int i, const Vec<dim> &g) { sum += (solid[i] + porosity[i] * apart[i]) * dot<dim>(g, g); };
-    for (int k = 0; k < dim; ++k) add_scaled<dim>(first, -1, shape[c].gradient[k]), add(node[k + 1], shape[c].gradient[k]);
+    for (int k = 0; k < dim; ++k)
+      add_scaled<dim>(first, -1, shape[c].gradient[k]), add(node[k + 1], shape[c].gradient[k]);
     add(node[0], first);
     for (int i : node) diagonal[i] += part * part * sum;
   }

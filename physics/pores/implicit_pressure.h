@@ -17,7 +17,7 @@ struct ImplicitPressure {
   ImplicitPressure(bool acts, int nodes, int cells) : acts(acts), gradients(acts ? nodes : 0) {
     if (!acts) return;
     for (Array *field : {&volume, &particle_volume, &acting, &held, &strain, &residual, &stiffness, &correction,
-                         &diagonal, &solid, &apart, &porosity, &gap_solid, &gap_apart, &beyond_gap})
+                         &diagonal, &solid, &apart, &supported, &porosity, &gap_solid, &gap_apart, &beyond_gap})
       make_room(*field, nodes);
     make_room(sums, 2 * static_cast<size_t>(nodes));
     for (Array *field : {&modulus, &unbounded}) make_room(*field, cells);
@@ -26,14 +26,15 @@ struct ImplicitPressure {
     walls.reserve(nodes), gap_corners.reserve((dim + 1) * static_cast<size_t>(cells));
   }
 
-  /// y = A x for pressures x at the nodes [Pa], theory of pores (8.5): the volume that the pores of the nodes lack after
-  /// the strain by their forces in a step [m3]. `shape` and `weight` of the cells. Collective.
+  /// y = A x for pressures x at the nodes [Pa], theory of pores (8.5): the volume that the pores of the nodes lack
+  /// after the strain by their forces in a step [m3]. `shape` and `weight` of the cells. Collective.
   PetscErrorCode apply(FilledGrid<dim> &grid, const PrescribedMotion<dim> &supports, const Shape<dim> *shape,
                        const double *weight, double step, const double *x, double *y);
   /// Its diagonal, but for what cells around a node cancel. Collective.
   PetscErrorCode find_diagonal(FilledGrid<dim> &grid, const Shape<dim> *shape, const double *weight, double step);
   /// Sum of w p grad N at the nodes for pressures p of nodes, of which a cell has the mean, into `push`. Collective.
-  PetscErrorCode find_push(FilledGrid<dim> &grid, const Shape<dim> *shape, const double *weight, const double *pressure);
+  PetscErrorCode find_push(FilledGrid<dim> &grid, const Shape<dim> *shape, const double *weight,
+                           const double *pressure);
 
   /// Sum of the pressures of the cells at the gaps times their shares, into `beyond_gap` [N m]. Collective.
   PetscErrorCode find_beyond_gaps(FilledGrid<dim> &grid, const Shape<dim> *shape, const double *weight,
@@ -66,6 +67,7 @@ struct ImplicitPressure {
   Array stiffness;        ///< - dP over strain [Pa]
   Array correction;       ///< of the pressure that acts [Pa]
   Array solid, apart;     ///< velocity of the skeleton, and of the liquid against it, over an impulse of `push` [1/kg]
+  Array supported;        ///< velocity of the liquid over an impulse of `push` where the skeleton is held [1/kg]
   Array porosity;         ///< share of `push` on the liquid
   Array diagonal, sums;
   std::vector<Vec<dim>> push;                ///< sum of w p grad N [N]

@@ -157,8 +157,8 @@ PetscErrorCode PoreFluid<dim, Phases>::smooth_divergence(const Frame &frame, Arr
   PetscFunctionReturn(0);
 }
 
-/// Where pressure is implicit in time, nodes give what comes to them in proportion to the volumes of the particles around
-/// them: so it strains the pores of all cells of a node alike, theory (8.4). Collective.
+/// Where pressure is implicit in time, nodes give what comes to them in proportion to the volumes of the particles
+/// around them: so it strains the pores of all cells of a node alike, theory (8.4). Collective.
 template <int dim, class Phases>
 PetscErrorCode PoreFluid<dim, Phases>::spread_divergence(const Frame &frame, Array &divergence) {
   PetscFunctionBeginUser;

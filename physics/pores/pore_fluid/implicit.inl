@@ -58,12 +58,13 @@ void PoreFluid<dim, Phases>::find_mobility(const Frame &frame, const PoreConditi
   for (int i = 0; i < frame.grid.node_count(); ++i) {
     const NodalFluid at = over_step(i, 0);
     const double mass = frame.grid.mass[i];
-    of.solid[i] = of.apart[i] = of.porosity[i] = of.gap_solid[i] = of.gap_apart[i] = 0;
+    of.solid[i] = of.apart[i] = of.supported[i] = of.porosity[i] = of.gap_solid[i] = of.gap_apart[i] = 0;
     if (!(mass > 0 && at.whole_mass > 0)) continue;
     const double share = at.mass / at.whole_mass;
     double solid = (1 - share) / mass, liquid = 1 / at.whole_mass;
     resolve_drag<1>(step, mass, solid, &at, &liquid);
     of.solid[i] = solid, of.apart[i] = liquid - solid, of.porosity[i] = share;
+    of.supported[i] = 1 / (at.whole_mass * (1 + drag_number(step, at)));
     if (gap_[i] == Vec<dim>{}) continue;
     solid = share / mass, liquid = -1 / at.whole_mass;
     resolve_drag<1>(step, mass, solid, &at, &liquid);
@@ -112,8 +113,7 @@ PetscErrorCode PoreFluid<dim, Phases>::find_pore_strain(const Frame &frame, cons
     Square<dim> g = Square<dim>::Identity();
     for (int k = 0; k < dim; ++k)
       for (int i = 0; i < dim; ++i)
-        for (int j = 0; j < dim; ++j)
-          g(i, j) += (u[shape.node[k + 1]][i] - u[shape.node[0]][i]) * shape.gradient[k][j];
+        for (int j = 0; j < dim; ++j) g(i, j) += (u[shape.node[k + 1]][i] - u[shape.node[0]][i]) * shape.gradient[k][j];
     const double part = frame.weight[c] / (dim + 1), own = part * std::log(g.determinant()),
                  apart = part * divergence_[0][c] / cells_[c].density[0];
     for (int i : shape.node) of.sums[2 * i] += own, of.sums[2 * i + 1] += apart;
