@@ -22,12 +22,12 @@ class ConjugateGradients {
   /// A is not positive definite. `taken`: number of iterations. Collective.
   template <class Apply, class Product, class Sizes>
   PetscErrorCode solve(int nodes, const double *diagonal, const double *b, double *x, int most, Apply &&apply,
-                       Product &&product, Sizes &&sizes, double enough, int *taken) {
+                       Product &&product, Sizes &&sizes, double enough) {
     PetscFunctionBeginUser;
     double *r = residual_.data(), *p = direction_.data(), *q = image_.data();
     for (int i = 0; i < nodes; ++i) x[i] = 0, r[i] = b[i], p[i] = b[i] / diagonal[i];
     double weighted = product(r, p);
-    for (*taken = 0; *taken < most && weighted > 0; ++*taken) {
+    for (int taken = 0; taken < most && weighted > 0; ++taken) {
       PetscCall(apply(p, q));
       const double curvature = product(p, q);
       if (!(curvature > 0)) break;

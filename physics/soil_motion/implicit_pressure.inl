@@ -69,13 +69,11 @@ PetscErrorCode SoilMotion<dim, Phases>::add_implicit_pressure(double t, double g
     }
     PetscCall(find_strain_of_step(t, gamma, velocity));
     const auto lacks = sum([&](int i) { return of.volume[i] * square((of.held[i] - of.strain[i]) * of.stiffness[i]); });
-    measures_.pressure_rounds = round;
     if (lacks[0] <= allowed) break;
     if (round == 0) fluid_.find_mobility(frame, pore_conditions_, gamma, of);  // once the gaps are known
     PetscCall(of.find_diagonal(grid_, shape, weight, gamma));
     for (int i = 0; i < nodes; ++i) of.residual[i] = of.volume[i] * (of.held[i] - of.strain[i]);
     const double enough = std::max(0.1 * allowed, 1e-5 * lacks[0]);
-    int taken = 0;
     PetscCall(of.gradients.solve(
         nodes, of.diagonal.data(), of.residual.data(), of.correction.data(), most_iterations,
         [&](const double *x, double *y) {
@@ -86,23 +84,10 @@ PetscErrorCode SoilMotion<dim, Phases>::add_implicit_pressure(double t, double g
           return sum([&](int i) { return r[i] * z[i]; },
                      [&](int i) { return square(r[i] * of.stiffness[i]) / of.volume[i]; });
         },
-        enough, &taken));
-    measures_.pressure_iterations += taken;
+        enough));
     for (int i = 0; i < nodes; ++i) of.acting[i] += of.correction[i];
     PetscCall(fluid_.push_by(frame, gamma, of.correction.data(), of, velocity));
-    if (std::getenv("IMP_DEBUG") && round == 3) {
-      double lo = 1e9, hi = 0, worst = 0; int w = 0;
-      for (int i = 0; i < nodes; ++i) {
-        const double al = of.volume[i] / of.particle_volume[i];
-        lo = std::min(lo, al), hi = std::max(hi, al);
-        const double x = of.volume[i] * square((of.held[i] - of.strain[i]) * of.stiffness[i]);
-        if (x > worst) worst = x, w = i;
-      }
-      PetscPrintf(comm(), "alpha %g %g gaps %d worst node %d at %g %g share %g alpha %g mass %g volume %g\n", lo, hi, (int)pore_conditions_.gap_cells().size(), w, grid_.position[w][0], grid_.position[w][1], worst / lacks[0], of.volume[w] / of.particle_volume[w], grid_.mass[w], of.volume[w]);
-    }
-    if (std::getenv("IMP_DEBUG")) PetscPrintf(comm(), "  round %d residual %g allowed %g taken %d\n", round, std::sqrt(lacks[0]/sizes[0]), std::sqrt(allowed/sizes[0]), taken);
   }
-  if (std::getenv("IMP_DEBUG")) PetscPrintf(comm(), "t %g rounds %d iterations %lld\n", t, measures_.pressure_rounds, measures_.pressure_iterations);
   PetscFunctionReturn(0);
 }
 

@@ -13,8 +13,6 @@ struct StepMeasures {
   double smallest_volume_ratio = 1;  ///< smallest volume of a cell over its volume in the mesh
   double step_ratio = 1;     ///< by which the critical step has shrunk with the cells since the remap, at most 1
   double speed_squared = 0;  ///< largest of a node; NaN when a node has no finite velocity [m2/s2]
-  int pressure_rounds = 0;                ///< of the last solve for implicit pressure
-  long long pressure_iterations = 0;      ///< of all of them
   bool inverted = false;     ///< a cell of the last state, accepted or trial, has turned inside out
 
   void begin_part() { moved = 0, smallest_volume_ratio = 1, step_ratio = 1; }
