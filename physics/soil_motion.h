@@ -152,6 +152,9 @@ class SoilMotion final : public AnySoilMotion<dim> {
   // velocities
   typename Conditions<dim>::Pores contact(double t, double gamma);
   void constrain(double t, Vec<dim> *v);
+  PetscErrorCode map_change(double gamma, const Vec<dim> *velocity, Vec<dim> *mapped) requires Phases::liquid;
+  PetscErrorCode find_strain_of_step(double t, double gamma, const Vec<dim> *velocity) requires Phases::liquid;
+  PetscErrorCode add_implicit_pressure(double t, double gamma, Vec<dim> *velocity) requires Phases::liquid;
   PetscErrorCode to_particles_and_back(const Vec<dim> *in, Vec<dim> *out);
   typename PoreFluid<dim, Phases>::Frame pore_frame(double t, const State &state) requires Phases::liquid;
 
@@ -182,6 +185,7 @@ class SoilMotion final : public AnySoilMotion<dim> {
   std::vector<double> forgotten_;  ///< history of the points of one body that a stage without softening discards
   // fluids that move
   [[no_unique_address]] If<Phases::liquid, PoreFluid<dim, Phases>> fluid_;
+  [[no_unique_address]] If<Phases::liquid, ImplicitPressure<dim>> implicit_;
   [[no_unique_address]] If<Phases::liquid, PoreConditions<dim>> pore_conditions_;
   [[no_unique_address]] If<Phases::liquid, std::vector<double>> pore_strain_;  ///< volume strain of the pores in cells
 

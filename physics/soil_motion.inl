@@ -8,6 +8,7 @@
 #include "physics/soil_motion.h"
 #include "scene/scene.h"
 #include "scene/transfer_source.h"
+#include "scene/water_source.h"
 
 namespace talus {
 
@@ -44,7 +45,9 @@ SoilMotion<dim, Phases>::SoilMotion(const MotionParts<dim> &parts)
                             [](const auto &body) { return !own_acceleration(body->source()).empty(); })),
       fastest_mode_(parts.mesh, smallest_mass_, pores_of_bodies(parts)),
       rayleigh_(parts.mesh, parts.bodies),
-      fluid_(parts.mesh, parts.bodies, parts.scene) {
+      fluid_(parts.mesh, parts.bodies, parts.scene),
+      implicit_(parts.scene.water->pressure == PoreIntegration::at_end, parts.mesh.node_count(),
+                parts.mesh.cell_count()) {
   const int nodes = parts.mesh.node_count();
   make_room(force_, nodes), make_room(scratch_, static_cast<size_t>(nodes) * fields);
   make_room(nodal_, static_cast<size_t>(nodes) * nodal_sums);
@@ -55,6 +58,7 @@ SoilMotion<dim, Phases>::SoilMotion(const MotionParts<dim> &parts)
 
 #include "physics/soil_motion/deformation.inl"
 #include "physics/soil_motion/forces.inl"
+#include "physics/soil_motion/implicit_pressure.inl"
 #include "physics/soil_motion/remap.inl"
 #include "physics/soil_motion/reports.inl"
 #include "physics/soil_motion/velocities.inl"

@@ -3,13 +3,16 @@
 #include <petscblaslapack.h>
 #include <petscsys.h>
 
+#include <algorithm>
+
 namespace talus {
 
 template <int dim>
 double cell_frequency_squared(const Cell<dim> &cell, const Law &law, double density, const PoreStiffness &pores) {
   constexpr int size = dim == 2 ? 3 : 6, most = size + 2;  // strains of the skeleton, and one per fluid
   constexpr int columns = dim * (dim + 1);
-  const int fluids = static_cast<int>(pores.fluids.size());
+  const int fluids = static_cast<int>(
+      std::ranges::count_if(pores.fluids, [](const PoreStiffness::Fluid &one) { return one.bulk_modulus > 0; }));
   const PetscBLASInt rows = size + fluids;
   double b[most][columns]{};
   double gradients = 0;

@@ -82,6 +82,7 @@ class Conditions {
                            const std::vector<double> &filling);
 
   const std::vector<Source> &sources() const { return sources_; }
+  const PrescribedMotion<dim> &prescribed() const { return prescribed_; }
   bool has_dashpots() const { return !dashpots_.empty(); }
   bool has_stand_ins() const {
     return std::ranges::any_of(sources_, [](const Source &source) { return source.kind.stands_in(); });

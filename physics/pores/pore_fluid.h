@@ -16,6 +16,7 @@
 #include "physics/boundary/pore_conditions.h"
 #include "physics/pores/drag.h"
 #include "physics/pores/fluids.h"
+#include "physics/pores/implicit_pressure.h"
 #include "physics/pores/pore_report.h"
 #include "physics/pores/soil_pores.h"
 #include "physics/pores/storage.h"
@@ -117,6 +118,16 @@ class PoreFluid {
   /// of. It may be left out before particles are released. Collective.
   PetscErrorCode update_pressures(const Frame &frame);
 
+  // Pressure implicit in time, theory of pores, section 8; `frame` is the accepted state, as a trial.
+  PetscErrorCode start_implicit(const Frame &frame, ImplicitPressure<dim> &of) const;
+  PetscErrorCode find_squeezed(const Frame &frame, double *pressure, ImplicitPressure<dim> &of) const;
+  PetscErrorCode push_by(const Frame &frame, double step, const double *pressure, ImplicitPressure<dim> &of,
+                         Vec<dim> *velocity) const;
+  void find_mobility(const Frame &frame, const PoreConditions<dim> &conditions, double step,
+                     ImplicitPressure<dim> &of) const;
+  PetscErrorCode find_pore_strain(const Frame &frame, const PoreConditions<dim> &conditions, const Vec<dim> *u,
+                                  ImplicitPressure<dim> &of);
+
   /// Suction at the points of a body [Pa].
   const double *suction(int body) const requires Phases::suction { return points_[body].suction.data(); }
   PoreReport report(int body, int point, int cell, bool surface) const;
@@ -211,6 +222,7 @@ class PoreFluid {
   void set_masses_by_rate(const Frame &frame);
   template <class Hold>
   void limits(const Frame &frame, const PoreConditions<dim> &conditions, Hold &&hold) const;
+  PetscErrorCode spread_divergence(const Frame &frame, Array &divergence);
   PetscErrorCode share_divergence(const Frame &frame, Array &divergence) requires Phases::suction;
   PetscErrorCode share_pressure(const Frame &frame, Array &pressure) requires Phases::suction;
   /// Integration volume of a cell minus the volume of its particles; 0 in nearly full cells [m3].
@@ -237,7 +249,7 @@ class PoreFluid {
   [[no_unique_address]] If<Phases::gas, PoreGas> gas_;
   std::vector<SoilPores> soils_;
   PrescribedPressure<dim> pressure_;
-  bool bishop_, smoothing_, patches_, explicit_drag_, by_rate_;
+  bool bishop_, smoothing_, patches_, explicit_drag_, by_rate_, implicit_;
 
   std::vector<PorePoints> points_, next_points_, trial_;
   std::vector<CellPores> cells_, trial_cells_;

@@ -23,6 +23,7 @@ PoreFluid<dim, Phases>::PoreFluid(const BackgroundMesh<dim> &mesh, std::vector<s
       patches_(scene.transfer->locking == Locking::patches),
       explicit_drag_(scene.water->drag == PoreDrag::at_start),
       by_rate_(scene.water->storage == PoreStorage::rate),
+      implicit_(scene.water->pressure == PoreIntegration::at_end),
       points_(bodies.size()),
       next_points_(bodies.size()),
       trial_(bodies.size()) {
@@ -160,5 +161,6 @@ PetscErrorCode PoreFluid<dim, Phases>::ledger(bool gathered, FluidLedger *sums) 
 #include "physics/pores/pore_fluid/drag.inl"
 #include "physics/pores/pore_fluid/exchange.inl"
 #include "physics/pores/pore_fluid/forces.inl"
+#include "physics/pores/pore_fluid/implicit.inl"
 #include "physics/pores/pore_fluid/pressures.inl"
 #include "physics/pores/pore_fluid/remap.inl"

@@ -11,7 +11,8 @@ struct Scene;
 struct PoreStiffness {
   double porosity = 0;
   struct Fluid {
-    double density, bulk_modulus;
+    double density;
+    double bulk_modulus;  ///< 0: its pressure is implicit in time and bounds no step [Pa]
   };
   std::vector<Fluid> fluids;
 };

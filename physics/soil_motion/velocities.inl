@@ -21,9 +21,11 @@ template <int dim, class Phases>
 PetscErrorCode SoilMotion<dim, Phases>::apply_boundaries_and_drag(double t, double gamma, double *v) {
   PetscFunctionBeginUser;
   Vec<dim> *velocity = reinterpret_cast<Vec<dim> *>(v);
-  if constexpr (Phases::liquid)
+  if constexpr (Phases::liquid) {
+    if (implicit_.acts && !fluid_.prescribed) PetscCall(add_implicit_pressure(t, gamma, velocity));
     fluid_.apply_drag_to_solid(gamma, pore_frame(t, accepted_), pore_conditions_, velocity,
                                velocity + grid_.node_count());
+  }
   conditions_.move_ground(loading.ground_velocity_at(t));
   conditions_.resolve(loading.time_at(t), gamma, grid_, velocity, contact(t, gamma));
   if constexpr (Phases::liquid)
@@ -73,6 +75,23 @@ PetscErrorCode SoilMotion<dim, Phases>::to_particles_and_back(const Vec<dim> *in
   PetscFunctionReturn(0);
 }
 
+/// What particles make of the change of the velocities in a step, [field][node], with what nodes keep. Collective.
+template <int dim, class Phases>
+PetscErrorCode SoilMotion<dim, Phases>::map_change(double gamma, const Vec<dim> *velocity,
+                                                   Vec<dim> *mapped) requires Phases::liquid {
+  PetscFunctionBeginUser;
+  const int all = grid_.node_count() * fields;
+  const std::vector<Vec<dim>> &before = velocities_.before_step;
+  const double share = velocities_.relaxes ? velocities_.relaxed_in(gamma) : 0;
+  for (int i = 0; i < all; ++i)
+    for (int d = 0; d < dim; ++d) scratch_[i][d] = velocity[i][d] - (1 - share) * before[i][d];
+  PetscCall(to_particles_and_back(scratch_.data(), mapped));
+  for (int i = 0; i < all; ++i)
+    for (int d = 0; d < dim; ++d) mapped[i][d] += (1 - share) * before[i][d];
+  conditions_.keep_dashpots(velocity, mapped);
+  PetscFunctionReturn(0);
+}
+
 template <int dim, class Phases>
 PetscErrorCode SoilMotion<dim, Phases>::map_back(double t, double gamma, double *v, double *w) {
   PetscFunctionBeginUser;
@@ -82,19 +101,12 @@ PetscErrorCode SoilMotion<dim, Phases>::map_back(double t, double gamma, double 
   if constexpr (Phases::liquid) {
     // drag and walls act on what particles would map back, as after a remap: that becomes the velocity of the nodes
     const int all = nodes * fields;
-    std::vector<Vec<dim>> &before = velocities_.before_step;
-    const double share = velocities_.relaxes ? velocities_.relaxed_in(gamma) : 0;
-    for (int i = 0; i < all; ++i)
-      for (int d = 0; d < dim; ++d) scratch_[i][d] = velocity[i][d] - (1 - share) * before[i][d];
-    PetscCall(to_particles_and_back(scratch_.data(), mapped));
-    for (int i = 0; i < all; ++i)
-      for (int d = 0; d < dim; ++d) mapped[i][d] += (1 - share) * before[i][d];
-    conditions_.keep_dashpots(velocity, mapped);
+    PetscCall(map_change(gamma, velocity, mapped));
     constrain(t, mapped);
     for (int i = 0; i < all; ++i)
       for (int d = 0; d < dim; ++d) {
         velocities_.start[i][d] += mapped[i][d] - velocity[i][d];  // particles take the change that is not mapped
-        velocity[i][d] = before[i][d] = mapped[i][d];
+        velocity[i][d] = velocities_.before_step[i][d] = mapped[i][d];
       }
     PetscFunctionReturn(0);
   }

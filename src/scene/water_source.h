@@ -10,20 +10,22 @@ enum class Compression { linear, exponential };
 enum class PoreStress { net, bishop };
 enum class PoreDrag { over_step, at_start };
 enum class PoreStorage { mass, rate };
+enum class PoreIntegration { at_start, at_end };
 
 /// Pore water given as a function of place and time (phase model `drained`).
 struct Water {
-  bool given = false;                             ///< the scene has a [water] table
-  double density = 1000;                          ///< [kg/m3]
-  double bulk_modulus = 2.2e9;                    ///< K_l [Pa]
-  double viscosity = 1e-3;                        ///< mu_l [Pa s]
-  Compression compression = Compression::linear;  ///< density over pressure
-  PoreStress stress = PoreStress::net;            ///< what the pores take off the total stress
-  PoreDrag drag = PoreDrag::over_step;            ///< implicit in a step, or from the velocities at its start
-  PoreStorage storage = PoreStorage::mass;        ///< what pressure follows from
-  Function suction;                               ///< above the table, function of x, y, z [Pa]; not given: hydrostatic
-  WaterTable table;                               ///< pressure is hydrostatic below it
-  Function level = 0.0;                           ///< added to the elevation of the table, function of t [m]
+  bool given = false;                                    ///< the scene has a [water] table
+  double density = 1000;                                 ///< [kg/m3]
+  double bulk_modulus = 2.2e9;                           ///< K_l [Pa]
+  double viscosity = 1e-3;                               ///< mu_l [Pa s]
+  Compression compression = Compression::linear;         ///< density over pressure
+  PoreStress stress = PoreStress::net;                   ///< what the pores take off the total stress
+  PoreDrag drag = PoreDrag::over_step;                   ///< implicit in a step, or from the velocities at its start
+  PoreStorage storage = PoreStorage::mass;               ///< what pressure follows from
+  PoreIntegration pressure = PoreIntegration::at_start;  ///< whose forces act in a step
+  Function suction;             ///< above the table, function of x, y, z [Pa]; not given: hydrostatic
+  WaterTable table;             ///< pressure is hydrostatic below it
+  Function level = 0.0;         ///< added to the elevation of the table, function of t [m]
   Function excess = 0.0;        ///< added to the hydrostatic pressure, function of x, y, z, t and `table` [Pa]
   bool open_water_load = true;  ///< open water above the ground rests on submerged faces
   template <class Visitor>
@@ -46,6 +48,10 @@ struct Water {
         "storage", storage, {{"mass", PoreStorage::mass}, {"rate", PoreStorage::rate}},
         "computation of pore pressure: from the mass of water in the pores, or by its rate from the present storage "
         "coefficient; rate is for comparison (it loses water near saturation) and needs phases = \"unsaturated\"");
+    v.choice(
+        "pressure", pressure, {{"explicit", PoreIntegration::at_start}, {"implicit", PoreIntegration::at_end}},
+        "pore pressures that act in a step: those at its start, or those at its end, with which the step is that of "
+        "dry soil; implicit needs phases = \"saturated\" and integrator.kind = \"euler\"");
     v.function("suction", suction, pascal, Range{0, 1e9, {0, 1e6}}, of::place,
                "initial suction above the water table, function of x, y, z; default: hydrostatic");
     v.water_table("table", table, metre,

@@ -29,6 +29,17 @@ IntegratorSettings choose_integrator(const Scene &scene) {
   if (scene.water->storage == PoreStorage::rate && !(phases.suction && !phases.gas && by_euler))
     scene.complain("water.storage",
                    "can be \"rate\" only with phases = \"unsaturated\" and integrator.kind = \"euler\"; leave it out");
+  if (scene.water->pressure == PoreIntegration::at_end) {
+    if (!(phases.liquid && !phases.suction && by_euler))
+      scene.complain(
+          "water.pressure",
+          "can be \"implicit\" only with phases = \"saturated\" and integrator.kind = \"euler\"; leave it out");
+    if (scene.water->drag == PoreDrag::at_start)
+      scene.complain("water.drag", "must be \"implicit\" with water.pressure = \"implicit\"; leave it out");
+    if (scene.transfer->pore_smoothing == PoreSmoothing::none)
+      scene.complain("transfer.pore_smoothing",
+                     "must be \"nodal\" with water.pressure = \"implicit\", which is one of nodes; leave it out");
+  }
   if (!phases.liquid) return settings;
   if (const std::string problem = drag_problem(settings); !problem.empty())
     scene.complain("integrator.kind", "must be \"euler\", or \"arkode\" of order 3, where pore fluids move: " +
@@ -79,7 +90,17 @@ Dynamics<dim>::Dynamics(World<dim> &world, Clock &clock, const IntegratorSetting
       balancing_(world.scene.mesh->balance_ranks, ranks_of(world.comm), cells_to_divide(world),
                  world.mesh.divisible()) {
   check_incoming_wave();
+  check_implicit_pressure();
   check_fixed_step();
+}
+
+/// Dashpots act after the pressure is found: they would squeeze pores whose water no longer gives way in the step.
+template <int dim>
+void Dynamics<dim>::check_implicit_pressure() const {
+  if (world_.scene.water->pressure == PoreIntegration::at_end && world_.conditions.has_dashpots())
+    world_.scene.complain("water.pressure",
+                          "must be \"explicit\" beside boundaries with dashpots (kind = \"non_reflecting\" or "
+                          "\"free_field\"); leave it out, or take other boundaries");
 }
 
 /// Integrators of higher order take dashpots once a step, which is of the first order: of a wave that comes in their

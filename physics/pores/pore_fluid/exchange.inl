@@ -143,12 +143,37 @@ PetscErrorCode PoreFluid<dim, Phases>::find_divergence(const Frame &frame, const
 template <int dim, class Phases>
 PetscErrorCode PoreFluid<dim, Phases>::smooth_divergence(const Frame &frame, Array &volume_strain) {
   PetscFunctionBeginUser;
+  if (implicit_) {
+    PetscCall(smooth<1>(frame, {volume_strain.data()}));
+    PetscCall(spread_divergence(frame, divergence_[0]));
+    PetscFunctionReturn(0);
+  }
   PetscCall(smooth<2>(
       frame, {volume_strain.data(), divergence_[0].data()}));  // gas moves by its own pressure, which is not smoothed
   const int cells = frame.grid.cell_count();
   for (int a = Phases::suction; a < fluids; ++a)
     for (int c = 0; c < cells; ++c) divergence_[a][c] *= frame.weight[c];
   if constexpr (Phases::suction) PetscCall(share_divergence(frame, divergence_[0]));
+  PetscFunctionReturn(0);
+}
+
+/// Where pressure is implicit in time, nodes give what comes to them in proportion to the volumes of the particles
+/// around them: so it strains the pores of all cells of a node alike, theory (8.4). Collective.
+template <int dim, class Phases>
+PetscErrorCode PoreFluid<dim, Phases>::spread_divergence(const Frame &frame, Array &divergence) {
+  PetscFunctionBeginUser;
+  const int nodes = frame.grid.node_count(), cells = frame.grid.cell_count();
+  std::fill_n(nodal_.begin(), 2 * nodes, 0.);
+  for (int c = 0; c < cells; ++c)
+    for (int i : frame.shape[c].node)
+      nodal_[2 * i] += frame.particle_volume[c], nodal_[2 * i + 1] += frame.weight[c] * divergence[c];
+  PetscCall(frame.grid.sum(nodal_.data(), 2));
+  for (int i = 0; i < nodes; ++i) nodal_[2 * i + 1] /= nodal_[2 * i] * (dim + 1);
+  for (int c = 0; c < cells; ++c) {
+    double sum = 0;
+    for (int i : frame.shape[c].node) sum += nodal_[2 * i + 1];
+    divergence[c] = frame.particle_volume[c] * sum;
+  }
   PetscFunctionReturn(0);
 }
 

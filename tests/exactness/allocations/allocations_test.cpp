@@ -148,6 +148,14 @@ TEST(Allocations, none_where_pore_fluids_move) {
   }
 }
 
+TEST(Allocations, none_where_pore_pressure_is_implicit) {
+  const Count c = count(wet_column, {"mesh.size=0.01", "water.pressure=implicit"}, 1000, 400);
+  EXPECT_GT(c.steps, 10);
+  EXPECT_GT(c.remaps, 1);
+  EXPECT_EQ(c.in_steps, 0);
+  EXPECT_EQ(c.in_remaps, 0);
+}
+
 TEST(Allocations, none_under_loads_that_move_with_a_face) {
   const Count c = count(loaded, {}, 300, 200);
   EXPECT_GT(c.steps, 10);

@@ -76,6 +76,7 @@ const Variant variants[] = {
      2},
     {"drained", {"phases=drained", "water.table=[[0, 0.3], [2, 0.1]]", "water.excess=100 * t"}},
     {"saturated", {"phases=saturated", "body.sand.permeability=1e-10", "water.bulk_modulus=1e7"}},
+    {"implicit_pressure", {"phases=saturated", "body.sand.permeability=1e-10", "water.pressure=implicit"}},
     {"unsaturated_in_rain", with_pores({"phases=unsaturated", "boundary.rain.kind=rainfall",
                                         "boundary.rain.group=free_surface", "boundary.rain.intensity=0.01"})},
     {"unsaturated_with_given_pressures_at_first", with_pores({"phases=unsaturated", "stage.0.pore_flow=false"})},

@@ -19,21 +19,25 @@ inline double terzaghi_pressure(double depth, double T) {
 }
 
 inline void terzaghi(Rung &rung) {
-  constexpr double modulus = 10e6, porosity = 0.3, bulk = 75e6, viscosity = 1e-3, load = 1e3;
-  constexpr double p0 = load * (bulk / porosity) / (modulus + bulk / porosity);
-  const auto consolidate = [&](int dimension, double k, double T) {
+  constexpr double modulus = 10e6, porosity = 0.3, soft = 75e6, water_itself = 2.2e9, viscosity = 1e-3, load = 1e3;
+  const auto consolidate = [&](int dimension, double k, double T, bool implicit = false) {
+    const double bulk = implicit ? water_itself : soft;
+    const double p0 = load * (bulk / porosity) / (modulus + bulk / porosity);
     const double c_v = k / viscosity / (1 / modulus + porosity / bulk);
     const std::string stress =
-        std::string("body.soil.stress=[0, \"-1000 * 10 / 260\", 0, 0") + (dimension == 3 ? ", 0, 0]" : "]");
-    const Run run = rung.run(
-        in_dimension(dimension, {stress, "body.soil.permeability=" + number(k), "stage.0.duration=" + number(T / c_v),
-                                 "output.history_interval=" + number(T / c_v / 20)}));
+        "body.soil.stress=[0, " + number(p0 - load) + ", 0, 0" + (dimension == 3 ? ", 0, 0]" : "]");
+    const Run run = rung.run(in_dimension(
+        dimension,
+        {stress, "body.soil.permeability=" + number(k), "water.excess=" + number(p0),
+         "water.bulk_modulus=" + number(bulk), std::string("water.pressure=") + (implicit ? "implicit" : "explicit"),
+         "stage.0.duration=" + number(T / c_v), "output.history_interval=" + number(T / c_v / 20)}));
     double largest = 0, square = 0, count = 0;
     for (const CellMeans &cell : cell_means(run.end, "pore_pressure", dimension)) {
       const double error = cell.value / p0 - terzaghi_pressure(1 - cell.y, T);
       largest = std::max(largest, std::abs(error)), square += error * error, ++count;
     }
-    const std::string name = name_of(dimension) + " k = " + number(k) + " m2, T = " + number(T);
+    const std::string name =
+        name_of(dimension) + (implicit ? " implicit, k = " : " k = ") + number(k) + " m2, T = " + number(T);
     rung.compare(name + ", rms error of p / p0", 0, std::sqrt(square / count), 0.01, 1);
     rung.report(name + ", largest error of p / p0", 0, largest, 1);
     const double water = run.history.column("water_kg").front();
@@ -43,6 +47,8 @@ inline void terzaghi(Rung &rung) {
   for (const double T : {0.1, 0.5, 1.}) consolidate(2, 1e-10, T);
   consolidate(2, 1e-12, 0.01);
   consolidate(3, 1e-10, 0.1);
+  for (const double k : {1e-9, 1e-10, 1e-12}) consolidate(2, k, k < 1e-11 ? 0.01 : 0.1, true);
+  consolidate(3, 1e-10, 0.1, true);
   if (!rung.longer()) return;
   for (const double T : {0.1, 0.5, 1.}) consolidate(2, 1e-12, T);
   for (const double T : {0.5, 1.}) consolidate(3, 1e-10, T);
