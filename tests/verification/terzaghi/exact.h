@@ -47,7 +47,8 @@ inline void terzaghi(Rung &rung) {
   for (const double T : {0.1, 0.5, 1.}) consolidate(2, 1e-10, T);
   consolidate(2, 1e-12, 0.01);
   consolidate(3, 1e-10, 0.1);
-  for (const double k : {1e-9, 1e-10, 1e-12}) consolidate(2, k, k < 1e-11 ? 0.01 : 0.1, true);
+  consolidate(2, 1e-10, 0.1, true);
+  consolidate(2, 1e-12, 0.01, true);
   consolidate(3, 1e-10, 0.1, true);
   if (!rung.longer()) return;
   for (const double T : {0.1, 0.5, 1.}) consolidate(2, 1e-12, T);
