@@ -34,7 +34,8 @@ PetscErrorCode SoilMotion<dim, Phases>::add_implicit_pressure(double t, double g
                                                               Vec<dim> *velocity) requires Phases::liquid {
   PetscFunctionBeginUser;
   constexpr double tolerance = 1e-2;  // of the pressure that acts
-  constexpr double least = 1e-9;      // of the stiffness of the water
+  constexpr double reduction = 0.1;   // of what is lacking at first: water at rest comes to rest
+  constexpr double least = 1e-12;     // of the stiffness of the water
   constexpr int most_rounds = 12, most_turns = 6, most_iterations = 500;
   const int nodes = grid_.node_count();
   ImplicitPressure<dim> &of = implicit_;
@@ -56,11 +57,9 @@ PetscErrorCode SoilMotion<dim, Phases>::add_implicit_pressure(double t, double g
   PetscCall(fluid_.start_implicit(frame, of));
   std::fill_n(of.held.begin(), nodes, 0.);
   PetscCall(fluid_.find_squeezed(frame, of.acting.data(), of));
+  double allowed = 0, at_first = 0;  // volume times the square of what pressures may lack, and of what they lack
   for (int round = 0; round < most_rounds; ++round) {
     double *pressure = of.residual.data();
-    const auto sizes = sum([&](int i) { return of.volume[i] * square(of.acting[i]); },
-                           [&](int i) { return of.volume[i] * square(least * of.stiffness[i]); });
-    const double allowed = square(tolerance) * sizes[0] + sizes[1];
     for (int turn = 0; turn < most_turns && round > 0; ++turn) {  // piecewise linear
       PetscCall(fluid_.find_squeezed(frame, pressure, of));
       const auto apart = sum([&](int i) { return of.volume[i] * square(pressure[i] - of.acting[i]); });
@@ -68,12 +67,17 @@ PetscErrorCode SoilMotion<dim, Phases>::add_implicit_pressure(double t, double g
       for (int i = 0; i < nodes; ++i) of.held[i] += (pressure[i] - of.acting[i]) / of.stiffness[i];
     }
     PetscCall(find_strain_of_step(t, gamma, velocity));
-    const auto lacks = sum([&](int i) { return of.volume[i] * square((of.held[i] - of.strain[i]) * of.stiffness[i]); });
-    if (lacks[0] <= allowed) break;
+    const auto [lacks, acts, floor] =
+        sum([&](int i) { return of.volume[i] * square((of.held[i] - of.strain[i]) * of.stiffness[i]); },
+            [&](int i) { return of.volume[i] * square(of.acting[i]); },
+            [&](int i) { return of.volume[i] * square(least * of.stiffness[i]); });
+    if (round == 0) at_first = lacks;
+    allowed = std::max(floor, std::min(square(tolerance) * acts, square(reduction) * at_first));
+    if (lacks <= allowed) break;
     if (round == 0) fluid_.find_mobility(frame, pore_conditions_, gamma, of);  // once the gaps are known
     PetscCall(of.find_diagonal(grid_, shape, weight, gamma));
     for (int i = 0; i < nodes; ++i) of.residual[i] = of.volume[i] * (of.held[i] - of.strain[i]);
-    const double enough = std::max(0.1 * allowed, 1e-5 * lacks[0]);
+    const double enough = std::max(0.1 * allowed, 1e-5 * lacks);
     PetscCall(of.gradients.solve(
         nodes, of.diagonal.data(), of.residual.data(), of.correction.data(), most_iterations,
         [&](const double *x, double *y) {

@@ -43,21 +43,23 @@ const std::vector<std::pair<std::string, std::string>> transfers = {
 
 /// A block of soil that slumps: about 100,000 particles, 8 in a tetrahedron and 6 in a triangle.
 std::string scene_text(const BenchCase &c, const std::string &law, const std::string &transfer) {
-  const bool solid = c.dimension == 3, wet = c.phases != "dry";
-  const bool moves = wet && c.phases != "drained";
+  const std::string phases = c.phases.substr(0, c.phases.find(','));
+  const bool solid = c.dimension == 3, wet = phases != "dry", implicit = phases != c.phases;
+  const bool moves = wet && phases != "drained";
   const std::string pores = moves ? "permeability = 1e-11\n" : "";
   const std::string curves =
-      moves && c.phases != "saturated"
+      moves && phases != "saturated"
           ? "[body.soil.retention]\ncurve = \"van_genuchten\"\nreference_suction = 5e3\nshape = 0.4\n"
             "[body.soil.relative_permeability]\ncurve = \"van_genuchten_mualem\"\nshape = 0.4\n"
           : "";
-  return "phases = \"" + c.phases + "\"\ndimension = " + std::to_string(c.dimension) +
+  return "phases = \"" + phases + "\"\ndimension = " + std::to_string(c.dimension) +
          "\ngravity = 9.81\n[mesh]\nsection = \"" + std::string(TALUS_MESHES) + "/dam.csv\"\n" +
          (solid ? "size = 0.091\nthickness = 1\nlayers = 0\n" : "size = 0.0165\n") +
          "[body.soil]\nregion = \"soil\"\n" +
          (wet ? "porosity = 0.3\ngrain_density = 2650\n" + pores : "density = 2000\n") +
          "particles_per_cell = " + (solid ? "8" : "6") + "\nvelocity = [\"0.3\", \"0\"" + (solid ? ", \"0\"" : "") +
          "]\n" + law + "\n" + (wet ? curves + "[water]\ntable = [[0, 0.5], [4, 0.5]]\n" : "") +
+         (implicit ? "pressure = \"implicit\"\n" : "") +
          "[boundary.base]\nkind = \"roller\"\n[boundary.left]\nkind = \"roller\"\n[boundary.right]\nkind = "
          "\"roller\"\n" +
          (solid ? "[boundary.front]\nkind = \"roller\"\n[boundary.back]\nkind = \"roller\"\n" : "") +
@@ -187,7 +189,7 @@ void print_json(const std::vector<BenchCase> &cases, const std::vector<BenchScen
 }
 
 void print_line(const BenchCase &c) {
-  std::printf("%-3d %-11s %-32s %-38s %9lld %9.1f %9.1f |     %6.1f %7.1f %7.1f %7.1f | %.3g\n", c.dimension,
+  std::printf("%-3d %-19s %-32s %-38s %9lld %9.1f %9.1f |     %6.1f %7.1f %7.1f %7.1f | %.3g\n", c.dimension,
               c.phases.c_str(), c.law.c_str(), c.transfer.c_str(), c.particles, c.rate / 1e6, cell_rate(c) / 1e6,
               1e9 * c.breakdown.step, 1e9 * c.breakdown.release, 1e9 * c.breakdown.relocate, 1e9 * c.breakdown.gather,
               1 / c.simulated_per_wall);
@@ -215,7 +217,8 @@ bool measured_in(const std::string &phases, const std::string &law) {
 std::vector<Selected> select(const std::string &only) {
   std::vector<Selected> chosen;
   for (int dimension : {2, 3})
-    for (const std::string phases : {"dry", "drained", "saturated", "unsaturated", "three-phase"})
+    for (const std::string phases :
+         {"dry", "drained", "saturated", "saturated, implicit", "unsaturated", "three-phase"})
       for (const auto &[law, keys] : bench_soils())
         for (const auto &[transfer, options] : transfers) {
           if (!measured_in(phases, law) || (transfer != "default" && !in_depth(law))) continue;
@@ -233,7 +236,7 @@ int bench(const BenchArguments &arguments) {
   std::vector<BenchCase> cases;
   if (rank == 0 && !arguments.json) {
     std::printf("%s, %.1f GB/s a core\n\n", processor().c_str(), bandwidth() / 1e9);
-    std::printf("%-3s %-11s %-32s %-38s %9s %9s %9s | ns: %6s %7s %7s %7s | %s\n", "dim", "phases", "law", "transfer",
+    std::printf("%-3s %-19s %-32s %-38s %9s %9s %9s | ns: %6s %7s %7s %7s | %s\n", "dim", "phases", "law", "transfer",
                 "particles", "M/s/core", "M cells/s", "step", "to_part", "relocate", "to_node", "wall s / simulated s");
   }
   for (const auto &[c, keys, options] : select(arguments.only)) {

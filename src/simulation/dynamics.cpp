@@ -31,11 +31,15 @@ IntegratorSettings choose_integrator(const Scene &scene) {
                    "can be \"rate\" only with phases = \"unsaturated\" and integrator.kind = \"euler\"; leave it out");
   if (scene.water->pressure == PoreIntegration::at_end) {
     if (!(phases.liquid && !phases.suction && by_euler))
-      scene.complain(
-          "water.pressure",
-          "can be \"implicit\" only with phases = \"saturated\" and integrator.kind = \"euler\"; leave it out");
+      scene.complain("water.pressure",
+                     "can be \"implicit\" only with phases = \"saturated\" and integrator.kind = \"euler\": take "
+                     "these, or leave it out");
     if (scene.water->drag == PoreDrag::at_start)
       scene.complain("water.drag", "must be \"implicit\" with water.pressure = \"implicit\"; leave it out");
+    if (!scene.transfer->average_stress)
+      scene.complain(
+          "transfer.average_stress",
+          "must be true with water.pressure = \"implicit\": water is shared by the particles of a cell; leave it out");
     if (scene.transfer->pore_smoothing == PoreSmoothing::none)
       scene.complain("transfer.pore_smoothing",
                      "must be \"nodal\" with water.pressure = \"implicit\", which is one of nodes; leave it out");
@@ -94,22 +98,17 @@ Dynamics<dim>::Dynamics(World<dim> &world, Clock &clock, const IntegratorSetting
   check_fixed_step();
 }
 
-/// Dashpots act after the pressure is found: they would squeeze pores whose water no longer gives way in the step.
+/// Dashpots and friction act after the pressure is found: they would squeeze pores whose water no longer gives way in
+/// the step.
 template <int dim>
 void Dynamics<dim>::check_implicit_pressure() const {
-  if (world_.scene.water->pressure == PoreIntegration::at_end && world_.conditions.has_dashpots())
-    world_.scene.complain("water.pressure",
-                          "must be \"explicit\" beside boundaries with dashpots (kind = \"non_reflecting\" or "
-                          "\"free_field\"); leave it out, or take other boundaries");
-}
-
-/// Integrators of higher order take dashpots once a step, which is of the first order: of a wave that comes in their
-/// long steps lose a sixth.
-template <int dim>
-void Dynamics<dim>::check_incoming_wave() const {
-  const auto comes_in = [](const NamedBoundary &source) { return source.kind.incoming_wave; };
-  if (std::ranges::any_of(world_.conditions.sources(), comes_in) && !std::holds_alternative<EulerSettings>(settings_))
-    world_.scene.complain("integrator.kind", "must be \"euler\" where a wave comes in (incoming_wave = true)");
+  if (world_.scene.water->pressure != PoreIntegration::at_end) return;
+  for (const NamedBoundary &source : world_.conditions.sources())
+    if (source.kind.in_motion == OnSoil::dashpot || source.kind.in_motion == OnSoil::contact)
+      world_.scene.complain(
+          "boundary." + source.name + ".kind",
+          "acts on the velocities after pore pressures are found, which water.pressure = \"implicit\" "
+          "does not allow: take fixed, roller or tied, or water.pressure = \"explicit\"");
 }
 
 /// A fixed step that the first state already forbids is bad input; one that a later state forbids ends the run.

@@ -192,9 +192,9 @@ TEST(Ranks, column_of_wet_sand_is_the_same) {
                                  "boundary.rain.intensity=0.01"});
   }
 }
-/// Conjugate gradients end at a tolerance, and what they leave grows as round-off does.
+/// Round-off may end conjugate gradients an iteration sooner: what is left of the residual then differs.
 TEST(Ranks, column_of_wet_sand_is_the_same_with_implicit_pressure) {
-  expect_the_same(wet_column, {"mesh.size=0.01", "water.pressure=implicit", "water.bulk_modulus=2.2e9"}, 1e-8);
+  expect_the_same(wet_column, {"mesh.size=0.01", "water.pressure=implicit", "water.bulk_modulus=2.2e9"}, 1e-4);
 }
 TEST(Ranks, drained_slope_of_two_soils_is_the_same) { expect_the_same(slope, {}); }
 

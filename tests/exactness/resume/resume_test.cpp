@@ -98,7 +98,7 @@ const Variant variants[] = {
     {"in_a_wave_that_comes_in",
      [] {
        std::vector<std::string> set = shaken;
-       set.insert(set.end(), {"boundary.left.kind=non_reflecting", "boundary.left.incoming_wave=true"});
+       set.push_back("boundary.base={kind='non_reflecting', incoming_wave=true}");
        return set;
      }()},
     {"between_tied_sides_on_two_ranks",
