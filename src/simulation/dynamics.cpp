@@ -111,6 +111,15 @@ void Dynamics<dim>::check_implicit_pressure() const {
           "does not allow: take fixed, roller or tied, or water.pressure = \"explicit\"");
 }
 
+/// Integrators of higher order take dashpots once a step, which is of the first order: of a wave that comes in their
+/// long steps lose a sixth.
+template <int dim>
+void Dynamics<dim>::check_incoming_wave() const {
+  const auto comes_in = [](const NamedBoundary &source) { return source.kind.incoming_wave; };
+  if (std::ranges::any_of(world_.conditions.sources(), comes_in) && !std::holds_alternative<EulerSettings>(settings_))
+    world_.scene.complain("integrator.kind", "must be \"euler\" where a wave comes in (incoming_wave = true)");
+}
+
 /// A fixed step that the first state already forbids is bad input; one that a later state forbids ends the run.
 template <int dim>
 void Dynamics<dim>::check_fixed_step() {
