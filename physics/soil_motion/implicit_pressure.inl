@@ -34,7 +34,7 @@ PetscErrorCode SoilMotion<dim, Phases>::add_implicit_pressure(double t, double g
                                                               Vec<dim> *velocity) requires Phases::liquid {
   PetscFunctionBeginUser;
   constexpr double tolerance = 1e-2;  // of the pressure that acts
-  constexpr double reduction = 0.1;   // of what is lacking at first: water at rest comes to rest
+  constexpr double reduction = 0.3;   // of what is lacking at first: water at rest comes to rest
   constexpr double least = 1e-12;     // of the stiffness of the water
   constexpr int most_rounds = 12, most_turns = 6, most_iterations = 500;
   const int nodes = grid_.node_count();
@@ -77,7 +77,7 @@ PetscErrorCode SoilMotion<dim, Phases>::add_implicit_pressure(double t, double g
     if (round == 0) fluid_.find_mobility(frame, pore_conditions_, gamma, of);  // once the gaps are known
     PetscCall(of.find_diagonal(grid_, shape, weight, gamma));
     for (int i = 0; i < nodes; ++i) of.residual[i] = of.volume[i] * (of.held[i] - of.strain[i]);
-    const double enough = std::max(0.1 * allowed, 1e-5 * lacks);
+    const double enough = std::max(0.2 * allowed, 1e-5 * lacks);
     PetscCall(of.gradients.solve(
         nodes, of.diagonal.data(), of.residual.data(), of.correction.data(), most_iterations,
         [&](const double *x, double *y) {

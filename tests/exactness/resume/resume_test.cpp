@@ -76,7 +76,8 @@ const Variant variants[] = {
      2},
     {"drained", {"phases=drained", "water.table=[[0, 0.3], [2, 0.1]]", "water.excess=100 * t"}},
     {"saturated", {"phases=saturated", "body.sand.permeability=1e-10", "water.bulk_modulus=1e7"}},
-    {"implicit_pressure", {"phases=saturated", "body.sand.permeability=1e-10", "water.pressure=implicit"}},
+    {"implicit_pressure",
+     {"phases=saturated", "body.sand.permeability=1e-10", "water.pressure=implicit", "boundary.base={kind='fixed'}"}},
     {"unsaturated_in_rain", with_pores({"phases=unsaturated", "boundary.rain.kind=rainfall",
                                         "boundary.rain.group=free_surface", "boundary.rain.intensity=0.01"})},
     {"unsaturated_with_given_pressures_at_first", with_pores({"phases=unsaturated", "stage.0.pore_flow=false"})},
@@ -98,7 +99,8 @@ const Variant variants[] = {
     {"in_a_wave_that_comes_in",
      [] {
        std::vector<std::string> set = shaken;
-       set.push_back("boundary.base={kind='non_reflecting', incoming_wave=true}");
+       set.insert(set.end(), {"boundary.base={kind='non_reflecting', incoming_wave=true}", "boundary.left.kind=tied",
+                              "boundary.left.group=['left', 'right']"});
        return set;
      }()},
     {"between_tied_sides_on_two_ranks",
