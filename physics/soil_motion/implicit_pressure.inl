@@ -34,7 +34,7 @@ PetscErrorCode SoilMotion<dim, Phases>::add_implicit_pressure(double t, double g
                                                               Vec<dim> *velocity) requires Phases::liquid {
   PetscFunctionBeginUser;
   constexpr double tolerance = 1e-2;  // of the pressure that acts
-  constexpr double reduction = 0.3;   // of what is lacking at first: water at rest comes to rest
+  constexpr double reduction = 0.1;   // of what is lacking at first: water at rest comes to rest
   constexpr double least = 1e-12;     // of the stiffness of the water
   constexpr int most_rounds = 12, most_turns = 6, most_iterations = 500;
   const int nodes = grid_.node_count();
