@@ -99,8 +99,8 @@ const Variant variants[] = {
     {"in_a_wave_that_comes_in",
      [] {
        std::vector<std::string> set = shaken;
-       set.insert(set.end(), {"boundary.base={kind='non_reflecting', incoming_wave=true}", "boundary.left.kind=tied",
-                              "boundary.left.group=['left', 'right']"});
+       set.insert(set.end(), {"boundary.base={kind='roller'}", "boundary.left.kind=non_reflecting",
+                              "boundary.left.incoming_wave=true"});
        return set;
      }()},
     {"between_tied_sides_on_two_ranks",
