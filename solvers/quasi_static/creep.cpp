@@ -17,6 +17,7 @@ PetscErrorCode LimitState<dim>::creep(double small, LimitSearch *result) {
   PetscFunctionBeginUser;
   *result = {};
   const auto before = problem_.save();
+  PetscCall(choose_solver());
   Vector way;
   PetscCall(VecDuplicate(x_, way.create()));
   PetscCall(VecZeroEntries(way));
@@ -51,11 +52,7 @@ PetscErrorCode LimitState<dim>::creep(double small, LimitSearch *result) {
                                    [&](const auto &one) { return one.first < result->displacement / 2; });
     if (result->displacement > far_from_elastic * elastic_displacement_ && half != curve.rend() &&
         result->residual > lasting * half->second) {
-      double on_prop, of_loads;
-      PetscCall(VecDot(of_prop_, x_, &on_prop));
-      PetscCall(VecDot(problem_.loads(), x_, &of_loads));
-      result->verdict = LimitVerdict::mechanism, result->surplus = on_prop / of_loads;
-      PetscCall(VecCopy(x_, mechanism_));
+      PetscCall(take_mechanism(result));
       break;
     }
     const int took = result->iterations - iterations;

@@ -103,7 +103,7 @@ PetscErrorCode FlowStep<dim>::make_solver() {
   PetscCall(VecGetSize(x_, &unknowns));
   if (soil_ || settings_.linear_solver == LinearSolver::direct ||
       (settings_.linear_solver == LinearSolver::automatic && unknowns <= largest_direct)) {
-    PetscCall(solve_by_lu(ksp, matrix));
+    PetscCall(solve_directly(ksp, matrix, Factorization::lu));
   } else {
     PetscCall(KSPSetType(ksp, KSPGMRES));
     PetscCall(KSPSetTolerances(ksp, 1e-8, PETSC_DEFAULT, PETSC_DEFAULT, 1000));

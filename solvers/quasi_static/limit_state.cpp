@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solvers/quasi_static/trial_strength.h"
+
 namespace talus {
 namespace {
 
@@ -13,11 +15,51 @@ constexpr double lasting = 0.75;
 // displacement is still in equilibrium.
 constexpr double first_prop = 1e-2, last_prop = 1e-9;
 constexpr int most_iterations = 200, most_per_prop = 40;
+// Of the linear systems of large bodies.
+constexpr double small_error = 1e-2;
+constexpr int most_iterations_of_system = 60;
 // Change of the friction of bases over all of it at which their friction is that of their normal force: a fifth of the
 // width of the bracket of a factor of safety.
 constexpr double small_change = 1e-3;
 
 }  // namespace
+
+template <int dim>
+PetscErrorCode LimitState<dim>::make_solver(bool symmetric) {
+  PetscFunctionBeginUser;
+  symmetric_ = symmetric;
+  PetscCall(KSPCreate(problem_.soil().nodes().comm(), solver_.create()));
+  PetscCall(KSPSetOptionsPrefix(solver_, "talus_"));
+  PetscCall(problem_.prepare_linear_solver(solver_, symmetric));
+  if (!problem_.direct()) {  // a direction that leads down will do: the search along it finds how far
+    PetscCall(KSPSetType(solver_, symmetric ? KSPCG : KSPFGMRES));
+    PetscCall(KSPSetTolerances(solver_, small_error, PETSC_DEFAULT, PETSC_DEFAULT, most_iterations_of_system));
+  }
+  PetscCall(KSPSetFromOptions(solver_));
+  PetscFunctionReturn(0);
+}
+
+/// For the strength that the soil has now.
+template <int dim>
+PetscErrorCode LimitState<dim>::choose_solver() {
+  PetscFunctionBeginUser;
+  const bool symmetric = !problem_.bases().any() &&
+                         std::ranges::all_of(problem_.soil().points(),
+                                             [](const GaussPoints<dim> &p) { return !p.present || has_energy(p.law); });
+  if (symmetric != symmetric_) PetscCall(make_solver(symmetric));
+  PetscFunctionReturn(0);
+}
+
+/// A tangent that is positive but for round-off is solved as one that is not.
+template <int dim>
+PetscErrorCode LimitState<dim>::solve(::Vec b, ::Vec x, bool *solved) {
+  PetscFunctionBeginUser;
+  PetscCall(solve_system(solver_, problem_.matrix(), b, x, solved));
+  if (*solved || !symmetric_) PetscFunctionReturn(0);
+  PetscCall(make_solver(false));
+  PetscCall(solve_system(solver_, problem_.matrix(), b, x, solved));
+  PetscFunctionReturn(0);
+}
 
 template <int dim>
 PetscErrorCode LimitState<dim>::setup(double load_time, double time, double share) {
@@ -29,7 +71,8 @@ PetscErrorCode LimitState<dim>::setup(double load_time, double time, double shar
   PetscCall(problem_.prepare(share, load_time, time, 0, x_));
   PetscCall(problem_.stiffness(0, 1));
   PetscCall(MatDuplicate(problem_.matrix(), MAT_COPY_VALUES, elastic_.create()));
-  PetscCall(problem_.solve_linear(problem_.loads(), direction_, &solved));
+  PetscCall(make_solver(true));
+  PetscCall(solve(problem_.loads(), direction_, &solved));
   PetscCall(VecNorm(direction_, NORM_INFINITY, &elastic_displacement_));
   PetscFunctionReturn(0);
 }
@@ -94,9 +137,8 @@ PetscErrorCode LimitState<dim>::settle(int most, double of_prop, double of_scale
     *settled = residual_ <= std::max(of_prop * prop_force_, of_scale * scale);
     if (*settled || k == most || stop_asked()) PetscFunctionReturn(0);
     PetscCall(problem_.stiffness(1, prop_));
-    PetscCall(problem_.solve_linear(force_, direction_, &solved));
+    PetscCall(solve(force_, direction_, &solved));
     ++result->iterations;
-    // where an iterative solver gave up, a direction that leads down will do: the search along it finds how far
     PetscCall(VecDot(force_, direction_, &slope));
     if (!(slope > 0 && std::isfinite(slope))) PetscFunctionReturn(0);
     PetscCall(line_search(slope, &step));
@@ -121,11 +163,24 @@ PetscErrorCode LimitState<dim>::settle_on_bases(int most, LimitSearch *result, b
   PetscFunctionReturn(0);
 }
 
+/// The soil moves along x_, which the prop resists.
+template <int dim>
+PetscErrorCode LimitState<dim>::take_mechanism(LimitSearch *result) {
+  double on_prop, of_loads;
+  PetscFunctionBeginUser;
+  PetscCall(VecDot(of_prop_, x_, &on_prop));
+  PetscCall(VecDot(problem_.loads(), x_, &of_loads));
+  result->verdict = LimitVerdict::mechanism, result->surplus = on_prop / of_loads;
+  PetscCall(VecCopy(x_, mechanism_));
+  PetscFunctionReturn(0);
+}
+
 template <int dim>
 PetscErrorCode LimitState<dim>::search(LimitSearch *result) {
   bool settled;
   PetscFunctionBeginUser;
   *result = {};
+  PetscCall(choose_solver());
   PetscCall(problem_.prepare(share_, load_time_, time_, 0, x_));
   prop_ = first_prop;
   PetscCall(evaluate(x_));
@@ -152,11 +207,7 @@ PetscErrorCode LimitState<dim>::search(LimitSearch *result) {
     const double decades = last_force > 0 ? std::log10(last_prop_tried / prop_) : 0;
     if (settled && decades > 0 && result->displacement > far_from_elastic * elastic_displacement_ &&
         force > std::pow(lasting, decades) * last_force) {
-      double on_prop, of_loads;
-      PetscCall(VecDot(of_prop_, x_, &on_prop));
-      PetscCall(VecDot(problem_.loads(), x_, &of_loads));
-      result->verdict = LimitVerdict::mechanism, result->surplus = on_prop / of_loads;
-      PetscCall(VecCopy(x_, mechanism_));
+      PetscCall(take_mechanism(result));
       break;
     }
     if (result->iterations >= most_iterations) break;

@@ -58,9 +58,13 @@ class LimitState {
 
  private:
   bool stop_asked() const { return problem_.stop_asked && problem_.stop_asked(); }
+  PetscErrorCode make_solver(bool symmetric);
+  PetscErrorCode choose_solver();
+  PetscErrorCode solve(::Vec b, ::Vec x, bool *solved);
   PetscErrorCode evaluate(::Vec x);
   PetscErrorCode settle(int most_iterations, double of_prop, double of_scale, LimitSearch *result, bool *settled);
   PetscErrorCode settle_on_bases(int most_iterations, LimitSearch *result, bool *settled);
+  PetscErrorCode take_mechanism(LimitSearch *result);
   PetscErrorCode line_search(double slope, double *step);
 
   QuasiStatic<dim> &problem_;
@@ -69,7 +73,9 @@ class LimitState {
   double prop_ = 0;                  ///< alpha: stiffness of the prop over the elastic stiffness [-]
   double residual_ = 0;              ///< size of the out-of-balance force of the propped soil [N]
   double prop_force_ = 0;            ///< size of the force of the prop [N]
-  Matrix elastic_;                   ///< elastic stiffness
+  Owned<KSP, KSPDestroy> solver_;
+  bool symmetric_ = true;  ///< the systems that it solves
+  Matrix elastic_;         ///< elastic stiffness
   Vector x_, trial_, direction_, force_, of_prop_, start_, mechanism_;
 };
 

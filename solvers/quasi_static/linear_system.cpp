@@ -6,18 +6,31 @@
 namespace talus {
 namespace {
 
-PetscErrorCode use_mumps(KSP ksp, Mat matrix) {
+PetscErrorCode factor_by(Factorization factorization, KSP ksp, Mat matrix) {
   PC pc;
   Mat factor;
   PetscFunctionBeginUser;
+  const bool lu = factorization == Factorization::lu;
   PetscCall(KSPSetType(ksp, KSPPREONLY));
   PetscCall(KSPSetOperators(ksp, matrix, matrix));
   PetscCall(KSPGetPC(ksp, &pc));
-  PetscCall(PCSetType(pc, PCLU));
-  PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+  PetscCall(PCSetType(pc, lu ? PCLU : PCCHOLESKY));
+  PetscCall(PCFactorSetMatSolverType(pc, lu ? MATSOLVERMUMPS : MATSOLVERCHOLMOD));
+  if (!lu) PetscFunctionReturn(0);
   PetscCall(PCFactorSetUpMatSolverType(pc));
   PetscCall(PCFactorGetMatrix(pc, &factor));
   PetscCall(MatMumpsSetIcntl(factor, 14, 100));  // room for pivots, in per cent: tangents at failure ask for many
+  PetscFunctionReturn(0);
+}
+
+/// A matrix that is not positive definite is an error of CHOLMOD, not a failure of `ksp`.
+PetscErrorCode factor(KSP ksp, bool *factored) {
+  PetscFunctionBeginUser;
+  PetscCall(PetscPushErrorHandler(PetscReturnErrorHandler, nullptr));
+  const PetscErrorCode error = KSPSetUp(ksp);
+  PetscCall(PetscPopErrorHandler());
+  *factored = error != PETSC_ERR_MAT_CH_ZRPVT;
+  if (*factored) PetscCall(error);
   PetscFunctionReturn(0);
 }
 
@@ -25,7 +38,7 @@ PetscErrorCode use_mumps(KSP ksp, Mat matrix) {
 /// first rank learns there that a matrix is singular, and the others wait for it.
 class GatheredSystem {
  public:
-  GatheredSystem() = default;
+  explicit GatheredSystem(Factorization factorization) : factorization_(factorization) {}
   GatheredSystem(const GatheredSystem &) = delete;
   GatheredSystem &operator=(const GatheredSystem &) = delete;
   ~GatheredSystem() {
@@ -36,7 +49,7 @@ class GatheredSystem {
     GatheredSystem *system;
     PetscFunctionBeginUser;
     PetscCall(PCShellGetContext(pc, &system));
-    PetscCall(system->factor(pc));
+    PetscCall(system->take(pc));
     PetscFunctionReturn(0);
   }
   static PetscErrorCode apply(PC pc, ::Vec b, ::Vec x) {
@@ -56,10 +69,12 @@ class GatheredSystem {
 
  private:
   PetscErrorCode gather(Mat spread, bool *new_pattern);
-  PetscErrorCode factor(PC pc);
+  PetscErrorCode take(PC pc);
   PetscErrorCode solve(PC pc, ::Vec b, ::Vec x);
   PetscErrorCode tell_failure(PC pc) const;
 
+  Factorization factorization_;
+  bool factored_ = true;           ///< on the first rank
   PetscObjectState pattern_ = 0;   ///< of the matrix that was gathered last
   Mat *matrix_ = nullptr;          ///< one matrix, empty on all ranks but the first
   Owned<KSP, KSPDestroy> solver_;  ///< on the first rank only
@@ -86,7 +101,7 @@ PetscErrorCode GatheredSystem::gather(Mat spread, bool *new_pattern) {
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode GatheredSystem::factor(PC pc) {
+PetscErrorCode GatheredSystem::take(PC pc) {
   Mat spread;
   int rank;
   const char *prefix;
@@ -101,11 +116,11 @@ PetscErrorCode GatheredSystem::factor(PC pc) {
       PetscCall(PCGetOptionsPrefix(pc, &prefix));
       PetscCall(KSPSetOptionsPrefix(solver_, prefix));
       PetscCall(KSPAppendOptionsPrefix(solver_, "gathered_"));
-      PetscCall(use_mumps(solver_, matrix_[0]));
+      PetscCall(factor_by(factorization_, solver_, matrix_[0]));
       PetscCall(KSPSetFromOptions(solver_));
     }
     PetscCall(KSPSetOperators(solver_, matrix_[0], matrix_[0]));
-    PetscCall(KSPSetUp(solver_));
+    PetscCall(factor(solver_, &factored_));
   }
   PetscCall(tell_failure(pc));
   PetscFunctionReturn(0);
@@ -130,7 +145,7 @@ PetscErrorCode GatheredSystem::tell_failure(PC pc) const {
   KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
   PetscFunctionBeginUser;
   if (solver_) PetscCall(KSPGetConvergedReason(solver_, &reason));
-  int failed = reason < 0;
+  int failed = reason < 0 || !factored_;
   PetscCallMPI(MPI_Bcast(&failed, 1, MPI_INT, 0, PetscObjectComm(reinterpret_cast<PetscObject>(pc))));
   PetscCall(PCSetFailedReason(pc, failed ? PC_SUBPC_ERROR : PC_NOERROR));
   PetscFunctionReturn(0);
@@ -217,23 +232,35 @@ PetscErrorCode SparseMatrix::send(std::vector<Entry> &entries) const {
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode solve_by_lu(KSP ksp, Mat matrix) {
+PetscErrorCode solve_directly(KSP ksp, Mat matrix, Factorization factorization) {
   PC pc;
   int ranks;
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_size(PetscObjectComm(reinterpret_cast<PetscObject>(matrix)), &ranks));
   if (ranks == 1) {
-    PetscCall(use_mumps(ksp, matrix));
+    PetscCall(factor_by(factorization, ksp, matrix));
     PetscFunctionReturn(0);
   }
   PetscCall(KSPSetType(ksp, KSPPREONLY));
   PetscCall(KSPGetPC(ksp, &pc));
   PetscCall(PCSetType(pc, PCSHELL));
-  PetscCall(PCShellSetName(pc, "LU (MUMPS) on the first rank"));
-  PetscCall(PCShellSetContext(pc, new GatheredSystem));
+  PetscCall(PCShellSetName(pc, "direct solution on the first rank"));
+  PetscCall(PCShellSetContext(pc, new GatheredSystem(factorization)));
   PetscCall(PCShellSetSetUp(pc, GatheredSystem::set_up));
   PetscCall(PCShellSetApply(pc, GatheredSystem::apply));
   PetscCall(PCShellSetDestroy(pc, GatheredSystem::destroy));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode solve_system(KSP ksp, Mat matrix, ::Vec b, ::Vec x, bool *solved) {
+  KSPConvergedReason reason;
+  PetscFunctionBeginUser;
+  PetscCall(KSPSetOperators(ksp, matrix, matrix));
+  PetscCall(factor(ksp, solved));
+  if (!*solved) PetscFunctionReturn(0);
+  PetscCall(KSPSolve(ksp, b, x));
+  PetscCall(KSPGetConvergedReason(ksp, &reason));
+  *solved = reason > 0;
   PetscFunctionReturn(0);
 }
 

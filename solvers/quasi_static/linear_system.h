@@ -38,11 +38,19 @@ class SparseMatrix {
   std::vector<Entry> elsewhere_;  ///< in rows of other ranks
 };
 
-/// Lets `ksp` solve systems of `matrix` by LU (MUMPS). A matrix that is spread over several ranks is gathered and
-/// solved on the first of them: MUMPS on several ranks adds what they send in the order in which it arrives, so that
-/// the last digits of its answer, and with them the length of steps, would differ from one run to the next. A matrix
-/// that cannot be factored is a failure of `ksp` on all ranks. PETSc's options of the solver on the first rank begin
-/// with the prefix of `ksp` and `gathered_`. Collective.
-PetscErrorCode solve_by_lu(KSP ksp, Mat matrix);
+enum class Factorization {
+  lu,       ///< by MUMPS
+  cholesky  ///< by CHOLMOD, of a matrix that is symmetric and positive definite
+};
+
+/// Lets `ksp` solve systems of `matrix` directly. A matrix that is spread over several ranks is gathered and solved on
+/// the first of them: MUMPS on several ranks adds what they send in the order in which it arrives, so that the last
+/// digits of its answer, and with them the length of steps, would differ from one run to the next. PETSc's options of
+/// the solver on the first rank begin with the prefix of `ksp` and `gathered_`. Collective.
+PetscErrorCode solve_directly(KSP ksp, Mat matrix, Factorization factorization);
+
+/// Solves `matrix` x = b; `solved` is false, on all ranks, where the matrix cannot be factored, or iterations do not
+/// converge. Collective.
+PetscErrorCode solve_system(KSP ksp, Mat matrix, ::Vec b, ::Vec x, bool *solved);
 
 }  // namespace talus

@@ -34,17 +34,11 @@ PetscErrorCode QuasiStatic<dim>::activate_again() {
   PetscFunctionReturn(0);
 }
 
-/// Direct up to a size at which its fill is still cheap, else GMRES with algebraic multigrid; PETSc's options change
-/// all of it.
 template <int dim>
 PetscErrorCode QuasiStatic<dim>::make_solver(SNESLineSearchType line_search) {
   KSP ksp;
-  PC pc;
-  constexpr long long largest_direct = dim == 2 ? 400000 : 40000;  // unknowns
   const QuasiStaticSource &settings = *scene_.quasi_static;
   PetscFunctionBeginUser;
-  direct_ = settings.linear_solver == LinearSolver::direct ||
-            (settings.linear_solver == LinearSolver::automatic && unknowns() <= largest_direct);
   PetscCall(SNESCreate(soil_.nodes().comm(), solver_.create()));
   PetscCall(SNESSetOptionsPrefix(solver_, "talus_"));
   PetscCall(SNESSetFunction(solver_, f_, snes_function, this));
@@ -54,17 +48,33 @@ PetscErrorCode QuasiStatic<dim>::make_solver(SNESLineSearchType line_search) {
   PetscCall(SNESSetTolerances(solver_, 0, settings.tolerance, 0, settings.iterations, PETSC_MAX_INT));
   PetscCall(SNESSetConvergenceTest(solver_, snes_converged, this, nullptr));
   PetscCall(SNESGetKSP(solver_, &ksp));
-  PetscCall(KSPGetPC(ksp, &pc));
-  if (direct_) {
-    PetscCall(solve_by_lu(ksp, matrix_));
-  } else {
-    PetscCall(KSPSetType(ksp, KSPFGMRES));
-    PetscCall(KSPGMRESSetRestart(ksp, 100));
-    PetscCall(KSPSetTolerances(ksp, 1e-8, PETSC_DEFAULT, PETSC_DEFAULT, 1000));
-    PetscCall(PCSetType(pc, PCGAMG));
-    PetscCall(unknowns_.tell_rigid_motions(matrix_));
-  }
+  PetscCall(prepare_linear_solver(ksp, false));
   PetscCall(SNESSetFromOptions(solver_));
+  PetscFunctionReturn(0);
+}
+
+template <int dim>
+bool QuasiStatic<dim>::direct() const {
+  constexpr long long largest_direct = dim == 2 ? 400000 : 40000;  // unknowns, at which its fill is still cheap
+  const LinearSolver wanted = scene_.quasi_static->linear_solver;
+  return wanted == LinearSolver::direct || (wanted == LinearSolver::automatic && unknowns() <= largest_direct);
+}
+
+template <int dim>
+PetscErrorCode QuasiStatic<dim>::prepare_linear_solver(KSP ksp, bool symmetric) {
+  PC pc;
+  PetscFunctionBeginUser;
+  if (direct()) {
+    PetscCall(solve_directly(ksp, matrix_, symmetric ? Factorization::cholesky : Factorization::lu));
+    PetscFunctionReturn(0);
+  }
+  PetscCall(KSPSetType(ksp, KSPFGMRES));
+  PetscCall(KSPGMRESSetRestart(ksp, 100));
+  PetscCall(KSPSetTolerances(ksp, 1e-8, PETSC_DEFAULT, PETSC_DEFAULT, 1000));
+  PetscCall(KSPGetPC(ksp, &pc));
+  PetscCall(PCSetType(pc, PCGAMG));
+  PetscCall(PCGAMGSetReuseInterpolation(pc, PETSC_TRUE));
+  PetscCall(unknowns_.tell_rigid_motions(matrix_));
   PetscFunctionReturn(0);
 }
 
@@ -227,13 +237,9 @@ PetscErrorCode QuasiStatic<dim>::start_with_motion(const std::vector<double> &mo
 template <int dim>
 PetscErrorCode QuasiStatic<dim>::solve_linear(::Vec b, ::Vec x, bool *solved) {
   KSP ksp;
-  KSPConvergedReason reason;
   PetscFunctionBeginUser;
   PetscCall(SNESGetKSP(solver_, &ksp));
-  PetscCall(KSPSetOperators(ksp, matrix_, matrix_));
-  PetscCall(KSPSolve(ksp, b, x));
-  PetscCall(KSPGetConvergedReason(ksp, &reason));
-  *solved = reason > 0;
+  PetscCall(solve_system(ksp, matrix_, b, x, solved));
   PetscFunctionReturn(0);
 }
 

@@ -125,7 +125,10 @@ class QuasiStatic {
   /// do in the equilibrium. Collective.
   PetscErrorCode boundary_forces(double load_time, std::vector<Vec<dim>> &force, std::vector<Vec<dim>> &face) const;
   long long unknowns() const { return unknowns_.count(); }
-  bool direct() const { return direct_; }  ///< the linear solver
+  bool direct() const;  ///< the linear solver; else it is GMRES with algebraic multigrid
+  /// Lets `ksp` solve systems of `matrix`, which is symmetric and positive definite or not. PETSc's options change all
+  /// of it. Collective.
+  PetscErrorCode prepare_linear_solver(KSP ksp, bool symmetric);
   /// Pieces that hang, and that no base holds, since `activate`.
   const LeftOut<dim> &left_out() const { return left_out_; }
 
@@ -186,7 +189,7 @@ class QuasiStatic {
   bool balanced_ = false;
   double least_ = 0;  ///< out-of-balance force that counts as an advance of the iterations, halved with each [N]
   int since_ = 0;     ///< iterations since the last advance
-  bool direct_ = true, stopped_ = false;
+  bool stopped_ = false;
   std::vector<char> present_;  ///< bodies
   LeftOut<dim> left_out_;
   CellSet moving_;            ///< cells that moved when `relax` ended

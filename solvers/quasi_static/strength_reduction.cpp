@@ -167,18 +167,17 @@ class Reduction {
     StrengthTrial trial;
     trial.search = search_, trial.factor = factor, trial.flow = flow_;
     const bool energy = flow_ != TrialFlow::own;
-    PetscCall(attempt_from(stable_, &LimitState<dim>::search, &trial, interrupted));
+    const bool creeps = !energy && settings_.by_damped_motion && factor > long_way * stable_factor_;
+    PetscCall(attempt_from(stable_, creeps ? &Reduction::creep : &Reduction::iterate, &trial, interrupted));
     const auto open = [&] { return trial.outcome == TrialOutcome::undecided && !*interrupted; };
     // soil with psi < phi follows a mechanism that is a small step away, and takes a smaller step before others
     const bool near = any_stable_ && narrow(stable_factor_, factor);
     if (!energy && !near && trial.outcome == TrialOutcome::mechanism) trial.outcome = TrialOutcome::undecided;
     // from the first state too, where the last one leads nowhere
-    if (open() && energy && any_stable_) PetscCall(attempt_from(start_, &LimitState<dim>::search, &trial, interrupted));
+    if (open() && energy && any_stable_) PetscCall(attempt_from(start_, &Reduction::iterate, &trial, interrupted));
     const bool last = energy || near || !any_stable_;
-    if (open() && !energy && settings_.by_damped_motion && factor > long_way * stable_factor_)
-      PetscCall(attempt_from(stable_, &Reduction::creep, &trial, interrupted));
     if (open() && last && settings_.by_damped_motion)
-      PetscCall(attempt_from(stable_, &LimitState<dim>::move, &trial, interrupted));
+      PetscCall(attempt_from(stable_, &Reduction::move, &trial, interrupted));
     else if (open() && last && !energy)
       trial.outcome = TrialOutcome::mechanism;
     if (*interrupted) PetscFunctionReturn(0);
@@ -191,9 +190,11 @@ class Reduction {
     PetscFunctionReturn(0);
   }
 
-  using Way = std::function<PetscErrorCode(LimitState<dim> &, LimitSearch *)>;
+  using Way = PetscErrorCode (*)(LimitState<dim> &, LimitSearch *);
+  static PetscErrorCode iterate(LimitState<dim> &limit, LimitSearch *found) { return limit.search(found); }
+  static PetscErrorCode move(LimitState<dim> &limit, LimitSearch *found) { return limit.move(found); }
   static PetscErrorCode creep(LimitState<dim> &limit, LimitSearch *found) { return limit.creep(small_residual, found); }
-  PetscErrorCode attempt_from(const State &state, const Way &way, StrengthTrial *trial, bool *interrupted) {
+  PetscErrorCode attempt_from(const State &state, Way way, StrengthTrial *trial, bool *interrupted) {
     PetscFunctionBeginUser;
     LimitSearch found;
     problem_.restore(state);

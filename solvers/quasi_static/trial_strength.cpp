@@ -31,6 +31,15 @@ bool non_associated(const Law &law) {
   return strength && strength->dilation_angle < strength->friction_angle;
 }
 
+bool has_energy(const Law &law) {
+  return law.visit([](const auto &one) {
+    using Own = std::decay_t<decltype(one)>;
+    if constexpr (std::same_as<Own, MohrCoulomb> || std::same_as<Own, DruckerPrager>)
+      return one.dilation_angle >= one.friction_angle;
+    return std::same_as<Own, LinearElastic>;
+  });
+}
+
 FrictionalPoint strength_of_trial(const FrictionalPoint &own, double factor, TrialFlow flow) {
   FrictionalStrength divided;
   divided.cohesion = own.c, divided.friction_angle = own.phi, divided.dilation_angle = own.psi;

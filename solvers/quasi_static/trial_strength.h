@@ -19,6 +19,8 @@ FrictionalPoint strength_of_trial(const FrictionalPoint &own, double factor, Tri
 
 /// Has the law a friction angle above its dilation angle?
 bool non_associated(const Law &law);
+/// Has soil of this law an energy, and with it a tangent that is symmetric and positive?
+bool has_energy(const Law &law);
 
 /// While it exists the soil has the strength of trials: each point that which its place and its plastic strain left it,
 /// divided by the factor of the trial or by a number of its own, and so have the bases. Trials do not soften soil. What

@@ -113,16 +113,20 @@ TEST(QuasiStatic, soil_in_the_air_is_refused) {
   });
 }
 
-/// A cut of clay on elastic rock: the clay fails, and the log says that the rock was left as it is.
+/// A cut of clay on elastic rock: the clay fails, and the log says that the rock was left as it is. Large bodies are
+/// solved by iterations that end early, which find the same bracket.
 TEST(FactorOfSafety, leaves_elastic_soil_beside_other_soil_as_it_is) {
   const std::string layer = "density = 2000\nyoung_modulus = \"10 MPa\"\npoisson_ratio = 0.3\n";
-  const Reduced cut = reduce("gravity = 10\n[mesh]\nsection = \"" + std::string(TALUS_LAYERS) +
-                             "\"\nsize = 0.25\n[body.rock]\nregion = \"lower\"\nlaw = \"linear_elastic\"\n" + layer +
-                             "[body.clay]\nregion = \"upper\"\nlaw = \"mohr_coulomb\"\nfriction_angle = 0\n"
-                             "cohesion = \"4 kPa\"\n" +
-                             layer +
-                             "[boundary.base]\nkind = \"fixed\"\n[boundary.left]\nkind = \"roller\"\n"
-                             "[[stage]]\nname = \"gravity\"\nkind = \"quasi_static\"\nduration = 1\n");
+  const std::string scene = "gravity = 10\n[mesh]\nsection = \"" + std::string(TALUS_LAYERS) +
+                            "\"\nsize = 0.25\n[body.rock]\nregion = \"lower\"\nlaw = \"linear_elastic\"\n" + layer +
+                            "[body.clay]\nregion = \"upper\"\nlaw = \"mohr_coulomb\"\nfriction_angle = 0\n"
+                            "cohesion = \"4 kPa\"\n" +
+                            layer +
+                            "[boundary.base]\nkind = \"fixed\"\n[boundary.left]\nkind = \"roller\"\n"
+                            "[[stage]]\nname = \"gravity\"\nkind = \"quasi_static\"\nduration = 1\n";
+  const Reduced cut = reduce(scene), large = reduce(scene, {"quasi_static.linear_solver=iterative"});
+  EXPECT_DOUBLE_EQ(large.factor.lower, cut.factor.lower);
+  EXPECT_DOUBLE_EQ(large.factor.upper, cut.factor.upper);
   // 3.77 c / (rho g h) of a vertical cut, h = 0.5 m; four cells over its height are stiffer
   EXPECT_GT(cut.factor.value(), 1.4);
   EXPECT_LT(cut.factor.value(), 1.9);
