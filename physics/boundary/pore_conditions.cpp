@@ -9,12 +9,37 @@
 #include "base/room.h"
 
 namespace talus {
+namespace {
+
+/// Behind tied sides ground goes on, and so does what flows in it.
+bool stops_fluids(const Boundary &kind) { return kind.water == OnWater::wall && kind.in_motion != OnSoil::tied; }
+
+/// Normal of two opposite sides, the same on all ranks. Collective.
+template <int dim>
+PetscErrorCode find_normal(const BackgroundMesh<dim> &mesh, const std::vector<std::string> &sides, Vec<dim> &normal) {
+  PetscFunctionBeginUser;
+  normal = {};
+  for (const std::string &side : sides)
+    for (const Facet<dim> &f : mesh.facets(side)) {
+      const auto leading = std::ranges::max_element(f.normal, {}, [](double n) { return std::abs(n); });
+      add_scaled<dim>(normal, *leading > 0 ? f.area : -f.area, f.normal);
+    }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, normal.data(), dim, MPI_DOUBLE, MPI_SUM, mesh.comm()));
+  const double length = std::sqrt(dot<dim>(normal, normal));
+  for (double &n : normal) n /= length;
+  PetscFunctionReturn(0);
+}
+
+}  // namespace
 
 template <int dim>
 PetscErrorCode PoreConditions<dim>::setup(const BackgroundMesh<dim> &mesh, const std::vector<Source> &sources,
                                           bool sealed, int vertical, const Vec<dim> &upward) {
   PetscFunctionBeginUser;
   sources_ = &sources, sealed_ = sealed, vertical_ = vertical, upward_ = upward;
+  for (const Source &source : sources)
+    if (source.kind.in_motion == OnSoil::tied)
+      PetscCall(find_normal<dim>(mesh, source.groups, through_.emplace_back()));
   std::set<std::pair<int, int>> open;  // facets with a face of the fluids
   std::vector<SourceFacets<dim>> walls, faces;
   for (int s = 0; s < static_cast<int>(sources.size()); ++s) {
@@ -28,7 +53,7 @@ PetscErrorCode PoreConditions<dim>::setup(const BackgroundMesh<dim> &mesh, const
   }
   PetscCall(set_corners(mesh, faces));
   for (int s = 0; s < static_cast<int>(sources.size()); ++s) {
-    if (sources[s].kind.water != OnWater::wall) continue;
+    if (!stops_fluids(sources[s].kind)) continue;
     walls.push_back({s, {}});
     for (const std::string &group : sources[s].groups)
       for (const Facet<dim> &f : mesh.facets(group))

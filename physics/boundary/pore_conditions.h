@@ -32,6 +32,12 @@ class PoreConditions {
   /// against gravity. Collective.
   PetscErrorCode setup(const BackgroundMesh<dim> &mesh, const std::vector<Source> &sources, bool sealed, int vertical,
                        const Vec<dim> &upward);
+  /// Gravity along which the pressure of still water grows. Behind tied sides the same ground comes again, and what
+  /// would push water through them makes it flow.
+  Vec<dim> filling_gravity(Vec<dim> gravity) const {
+    for (const Vec<dim> &n : through_) add_scaled<dim>(gravity, -dot<dim>(gravity, n), n);
+    return gravity;
+  }
   /// Is there open water on the free surface, so that `begin` needs its moments?
   bool open_water() const { return rain_ != atmosphere && (*sources_)[rain_].kind.open_water; }
   /// Picks nodes and faces of the filled grid; `surface` [node] is the sum of w grad N over all cells [m2], `moment`
@@ -265,7 +271,8 @@ class PoreConditions {
   bool sealed_ = false;
   int vertical_ = 1;  ///< component of a place that is its elevation
   Vec<dim> upward_{};
-  int rain_ = atmosphere;  ///< what acts on the free surface
+  int rain_ = atmosphere;          ///< what acts on the free surface
+  std::vector<Vec<dim>> through_;  ///< normals of tied sides, the same on all ranks
   std::vector<int> wall_of_node_;
   std::vector<Wall> walls_;
   std::vector<Corners> named_;    ///< the same sources on all ranks

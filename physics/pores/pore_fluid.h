@@ -48,10 +48,10 @@ class PoreFluid {
     const Vec<dim> *position;  ///< [node]
     const double *weight;      ///< w [cell]
     const std::vector<PointSet> &points;
-    const double *const *volume;    ///< [body][point]
-    const double *particle_volume;  ///< sum over the points of a cell
-    const double *blend;            ///< [cell]
-    Vec<dim> gravity;
+    const double *const *volume;        ///< [body][point]
+    const double *particle_volume;      ///< sum over the points of a cell
+    const double *blend;                ///< [cell]
+    Vec<dim> gravity, filling_gravity;  ///< the second is that of PoreConditions
     double time;
     bool averaged, trial;
   };
@@ -206,11 +206,8 @@ class PoreFluid {
   }
   double prescribed_gas_pressure(const Vec<dim> &x) const;
   std::array<double, 3> contents(const SoilPores &soil, double pressure, double gas_pressure) const;
-  double unit_weight(const Frame &frame) const {
-    double square = 0;
-    for (double g : frame.gravity) square += g * g;
-    return liquid_.density * std::sqrt(square);
-  }
+  /// Of still liquid, which water beside the soil stays where the ground is shaken along it.
+  double unit_weight(const Frame &frame) const { return -liquid_.density * dot<dim>(frame.gravity, upward()); }
   PetscErrorCode gas_flux(const Frame &frame, const Vec<dim> *gas, const Vec<dim> *solid) requires Phases::gas;
   static double pore_volume(double volume, double grains) { return std::max(volume - grains, 1e-6 * volume); }
   PetscErrorCode find_moment(const Frame &frame);

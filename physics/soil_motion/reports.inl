@@ -46,6 +46,7 @@ typename PoreFluid<dim, Phases>::Frame SoilMotion<dim, Phases>::pore_frame(doubl
           .particle_volume = state.particle_volume.data(),
           .blend = filling_.blend.data(),
           .gravity = loading.gravity_at(t),
+          .filling_gravity = pore_conditions_.filling_gravity(loading.gravity_at(t)),
           .time = loading.time_at(t),
           .averaged = transfer_.average_stress,
           .trial = is_trial(state)};

@@ -196,7 +196,7 @@ PetscErrorCode PoreFluid<dim, Phases>::update_pressures(const Frame &frame) {
   std::vector<CellPores> &pores = frame.trial ? trial_cells_ : cells_;
   for (int i = 0; i < nodes; ++i) {
     nodal_head_[i] = 0;
-    for (int d = 0; d < dim; ++d) nodal_head_[i] += frame.gravity[d] * frame.position[i][d];
+    for (int d = 0; d < dim; ++d) nodal_head_[i] += frame.filling_gravity[d] * frame.position[i][d];
   }
   const auto head = [&](int c, const std::array<double, dim + 1> &n) {  // g . x
     double sum = 0;
