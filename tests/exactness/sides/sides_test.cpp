@@ -66,10 +66,10 @@ const std::vector<std::string> gravel{
     "phases=saturated",
     "mesh.section=../../../meshes/box.csv",
     "mesh.size=0.25",
-    "water={bulk_modulus=1e8, table=[[0, 1], [1, 1]]}",
+    "water={bulk_modulus=1e8, table=[[0, 1.5], [1, 1.5]]}",
     "body.clay={region='soil', porosity=0.4, grain_density=2650, permeability=1e-9, law='linear_elastic', "
     "young_modulus=2e7, poisson_ratio=0.25}",
-    "boundary.surface={kind='pore_pressure', pressure=0}",
+    "boundary.surface={kind='head', level=1.5}",
     "output.point.left.position=[0.05, 0.2]",
     "output.point.right.position=[0.95, 0.2]",
     "output.point.top.position=[0.5, 0.2]"};
@@ -133,7 +133,8 @@ TEST(Sides, tied_sides_move_alike) {
   EXPECT_GT(largest(other), 0.2 * largest(left));
 }
 
-/// Level ground that is shaken along itself shears: no water has to flow, and none is pushed against the sides.
+/// Level ground under water that is shaken along itself shears: no water has to flow, none is pushed against the sides,
+/// and the water above weighs what it does at rest.
 TEST(Sides, water_moves_through_tied_sides) {
   const Result ground = run(tied + shaken + gravel);
   for (const std::string place : {"left", "right", "top"}) {
