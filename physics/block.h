@@ -11,6 +11,7 @@
 namespace talus {
 
 using Four = double __attribute__((vector_size(4 * sizeof(double))));
+using Two = double __attribute__((vector_size(2 * sizeof(double))));
 using Row = double __attribute__((vector_size(lanes * sizeof(double))));
 
 /// Numbers k to k + 3 of four points, from one Four a point to one Four a number.
@@ -34,7 +35,9 @@ struct Block {
 
   /// Each row is written at once: a wide read of what was written in pieces would wait for memory.
   [[gnu::always_inline]] void load(const double *const from[lanes]) {
-    if constexpr (size < 4)
+    if constexpr (size == 2)
+      load_pairs(from);
+    else if constexpr (size < 4)
       for (std::size_t k = 0; k < size; ++k) {
         const Row row{from[0][k], from[1][k], from[2][k], from[3][k], from[4][k], from[5][k], from[6][k], from[7][k]};
         std::memcpy(value[k], &row, sizeof row);
@@ -54,8 +57,34 @@ struct Block {
   void fill(double number) {
     for (auto &row : value) std::fill_n(row, lanes, number);
   }
-  void store(int lane, double *to) const {
-    for (std::size_t k = 0; k < size; ++k) to[k] = value[k][lane];
+  /// Points that stand for the same place have the same numbers.
+  [[gnu::always_inline]] void store(double *const to[lanes]) const {
+    if constexpr (size < 4)
+      for (int i = 0; i < lanes; ++i)
+        for (std::size_t k = 0; k < size; ++k) to[i][k] = value[k][i];
+    else
+      for (std::size_t step = 0; step < size; step += 4) {
+        const std::size_t first = step + 4 <= size ? step : size - 4;
+        const double *const rows[4] = {value[first], value[first + 1], value[first + 2], value[first + 3]};
+        const Transposed low(rows, 0), high(rows, 4);
+        for (int i = 0; i < 4; ++i) {
+          std::memcpy(to[i] + first, &low.row[i], sizeof low.row[i]);
+          std::memcpy(to[i + 4] + first, &high.row[i], sizeof high.row[i]);
+        }
+      }
+  }
+
+ private:
+  [[gnu::always_inline]] void load_pairs(const double *const from[lanes]) {
+    Two pair[lanes];
+    for (int i = 0; i < lanes; ++i) std::memcpy(&pair[i], from[i], sizeof pair[i]);
+    Four four[lanes / 2];
+    for (int i = 0; i < lanes / 2; ++i) four[i] = __builtin_shufflevector(pair[2 * i], pair[2 * i + 1], 0, 1, 2, 3);
+    const Row low = __builtin_shufflevector(four[0], four[1], 0, 1, 2, 3, 4, 5, 6, 7);
+    const Row high = __builtin_shufflevector(four[2], four[3], 0, 1, 2, 3, 4, 5, 6, 7);
+    const Row first = __builtin_shufflevector(low, high, 0, 2, 4, 6, 8, 10, 12, 14);
+    const Row second = __builtin_shufflevector(low, high, 1, 3, 5, 7, 9, 11, 13, 15);
+    std::memcpy(value[0], &first, sizeof first), std::memcpy(value[1], &second, sizeof second);
   }
 };
 

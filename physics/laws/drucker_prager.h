@@ -93,6 +93,15 @@ struct DruckerPragerCase : DruckerPrager {
     over_stiffness = 1 / (G + K * peak.eta_bar * peak.eta);
   }
 
+  /// Strength that varies is found twice.
+  template <int dim>
+  [[gnu::always_inline]] bool admits(const Stress<dim> &s, const History &history,
+                                     const Surroundings &around) const requires varies {
+    const Invariants<dim> trial(s);
+    const Strength<> now = strength(history[0], around);
+    return (trial.q + now.eta * trial.p - now.limit <= 0) & (trial.p < now.apex);
+  }
+
   /// Returns an elastic trial stress to the cone. The strength is that after the plastic strain which the strength at
   /// the start of the step would cause, as in MohrCoulomb.
   template <int dim, class Number>

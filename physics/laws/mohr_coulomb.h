@@ -181,6 +181,15 @@ struct MohrCoulombCase : MohrCoulomb {
     peak = strength(0., Surroundings{0});
   }
 
+  /// Softening takes strength and return twice.
+  template <int dim>
+  [[gnu::always_inline]] bool admits(const Stress<dim> &trial, const History &history,
+                                     const Surroundings &around) const requires softening {
+    const Principal<> s = PrincipalAxes<dim>(trial).values();
+    const Strength<> now = strength<double, by_place>(history[0], around);
+    return (now.yield(s.s1, s.s3) <= 0) & (s.s1 <= now.tension);
+  }
+
   /// Returns an elastic trial stress to the yield surface. The strength is that after the plastic strain which the
   /// strength at the start of the step would cause. This is of first order in the step; its error is (softening slope /
   /// 2 G) times the error that the strength at the start would give.

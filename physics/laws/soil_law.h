@@ -103,6 +103,13 @@ concept correct = requires(const OneLaw &law, Stress<dim, Number> &s, typename O
   == OneLaw::history.size();
   law.correct(s, h, around);
 };
+/// `admits(s, history, around)`: is a trial stress within the yield surface, so that `correct` leaves it and the
+/// history as they are? Absent: it is as dear as `correct`.
+template <class OneLaw, int dim>
+concept admits = requires(const OneLaw &law, const Stress<dim> &s, const typename OneLaw::History &h,
+                          const Surroundings &around) {
+  { law.admits(s, h, around) } -> std::same_as<bool>;
+};
 /// `trial(s, e, around)`: adds the elastic stress of a strain increment.
 template <class OneLaw, int dim, class Number>
 concept trial = requires(const OneLaw &law, Stress<dim, Number> &s, const Strain<dim, Number> &e,

@@ -19,8 +19,12 @@ struct StressPoints {
   const double *size;                ///< per filled cell, Surroundings::size
   const double *suction = nullptr;   ///< [count] Surroundings::suction; null where there is none
   const double *cohesion_share = nullptr, *friction_share = nullptr;  ///< [count] Surroundings' shares; null: 1
-  double time_step = 0;                                               ///< Surroundings::time_step
-  double time = 0;  ///< at the start of the step [s]; only a UMAT reads it
+  /// [count] by which the law sees more of its internal variable `averaged` than a point has, which gains what the law
+  /// adds; null: the law sees the point's own.
+  const double *excess = nullptr;
+  int averaged = 0;
+  double time_step = 0;  ///< Surroundings::time_step
+  double time = 0;       ///< at the start of the step [s]; only a UMAT reads it
 };
 
 template <int dim>

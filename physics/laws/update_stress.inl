@@ -64,17 +64,40 @@ struct PointBlock {
   Block<OneLaw::history.size()> history;
   Block<1> element_size;
   Block<OneLaw::by_place> suction, cohesion, friction;
+  Block<1> outside;  ///< 1: outside the yield surface
+  Row own, seen;     ///< of one internal variable: what the points have, and what the law sees
 
+  /// Lets the law see internal variable k greater by `excess` of each point ...
+  [[gnu::always_inline]] void show(int k, const double *const excess[lanes]) {
+    std::memcpy(&own, history.value[k], sizeof own);
+    Block<1> more;
+    more.load(excess);
+    std::memcpy(&seen, more.value[0], sizeof seen);
+    seen += own;
+    std::memcpy(history.value[k], &seen, sizeof seen);
+    asm("" : "+m"(history.value));  // as Block::load has it
+  }
+  /// ... and adds to what the points have what the law has added.
+  [[gnu::always_inline]] void give_back(int k) {
+    Row after;
+    std::memcpy(&after, history.value[k], sizeof after);
+    after = own + (after - seen);
+    std::memcpy(history.value[k], &after, sizeof after);
+  }
+
+  [[gnu::always_inline]] Surroundings around(double time_step, int i) const {
+    Surroundings found{element_size.value[0][i], 0, time_step};
+    if constexpr (OneLaw::by_place)
+      found.suction = suction.value[0][i], found.cohesion = cohesion.value[0][i], found.friction = friction.value[0][i];
+    return found;
+  }
   /// One call is the whole body of the loop: what lived in the loop itself would be kept in memory, and the loop stay
   /// scalar.
   template <bool strained>
   [[gnu::always_inline]] void correct(const OneLaw &law, double time_step, int i) {
     auto s = take<Stress<dim>>(stress, i);
     auto h = take<typename OneLaw::History>(history, i);
-    Surroundings around{element_size.value[0][i], 0, time_step};
-    if constexpr (OneLaw::by_place)
-      around.suction = suction.value[0][i], around.cohesion = cohesion.value[0][i],
-      around.friction = friction.value[0][i];
+    const Surroundings around = this->around(time_step, i);
     if constexpr (strained) {
       s = strained_by(law, s, take<Strain<dim>>(strain, i), h, around);
       const auto R = take<decltype(Increment<dim>::rotation)>(rotation, i);
@@ -88,7 +111,38 @@ struct PointBlock {
     put(stress, i, s);
     put(history, i, h);
   }
+  /// In three loops, of which blocks whose points all stay elastic leave out the second, `correct<false>`.
+  [[gnu::always_inline]] void strain_elastically(const OneLaw &law, double time_step, int i) {
+    auto s = take<Stress<dim>>(stress, i);
+    const Surroundings around = this->around(time_step, i);
+    law.trial(s, take<Strain<dim>>(strain, i), around);
+    put(stress, i, s);
+    outside.value[0][i] = law.admits(s, take<typename OneLaw::History>(history, i), around) ? 0 : 1;
+  }
+  [[gnu::always_inline]] void rotate(int i) {
+    put(stress, i, rotated(take<Stress<dim>>(stress, i), take<decltype(Increment<dim>::rotation)>(rotation, i)));
+  }
+  bool all_inside() const {
+    return std::all_of(outside.value[0], outside.value[0] + lanes, [](double x) { return x == 0; });
+  }
 };
+
+template <bool strained, int dim, class OneLaw>
+[[gnu::always_inline]] inline void correct(const OneLaw &law, double time_step, PointBlock<dim, OneLaw> &block) {
+  if constexpr (strained && member::admits<OneLaw, dim>) {
+#pragma omp simd
+    for (int i = 0; i < lanes; ++i) block.strain_elastically(law, time_step, i);
+    if (!block.all_inside()) {
+#pragma omp simd
+      for (int i = 0; i < lanes; ++i) block.template correct<false>(law, time_step, i);
+    }
+#pragma omp simd
+    for (int i = 0; i < lanes; ++i) block.rotate(i);
+  } else {
+#pragma omp simd
+    for (int i = 0; i < lanes; ++i) block.template correct<strained>(law, time_step, i);
+  }
+}
 
 /// Calls `use` with the law, or with the simplest case of it if it offers cases (`as_case`).
 template <class Use>
@@ -114,12 +168,15 @@ void correct_all(OneLaw law, const StressPoints<dim> &points) {
   for (int first = 0; first < points.count; first += lanes) {
     const int filled = std::min(lanes, points.count - first);
     const double *stress[lanes], *history[lanes], *strain[lanes], *rotation[lanes], *element_size[lanes],
-        *suction[lanes], *cohesion[lanes], *friction[lanes];
+        *suction[lanes], *cohesion[lanes], *friction[lanes], *excess[lanes];
+    double *stress_out[lanes], *history_out[lanes];
     for (int i = 0; i < lanes; ++i) {
       const int p = first + std::min(i, filled - 1);  // the last block repeats its last point
       stress[i] = points.stress_in + p * size;
       history[i] = points.history_in + p * memory;
+      stress_out[i] = points.stress_out + p * size, history_out[i] = points.history_out + p * memory;
       element_size[i] = points.size + points.cell[p];
+      if (points.excess) excess[i] = points.excess + p;
       if constexpr (OneLaw::by_place) {
         suction[i] = points.suction ? points.suction + p : &no_suction;
         if (points.cohesion_share) cohesion[i] = points.cohesion_share + p;
@@ -139,12 +196,10 @@ void correct_all(OneLaw law, const StressPoints<dim> &points) {
       if (points.friction_share) block.friction.load(friction);
     }
     if constexpr (strained) block.strain.load(strain), block.rotation.load(rotation);
-#pragma omp simd
-    for (int i = 0; i < lanes; ++i) block.template correct<strained>(law, time_step, i);
-    for (int i = 0; i < filled; ++i) {
-      block.stress.store(i, points.stress_out + (first + i) * size);
-      block.history.store(i, points.history_out + (first + i) * memory);
-    }
+    if (points.excess) block.show(points.averaged, excess);
+    correct<strained>(law, time_step, block);
+    if (points.excess) block.give_back(points.averaged);
+    block.stress.store(stress_out), block.history.store(history_out);
   }
 }
 

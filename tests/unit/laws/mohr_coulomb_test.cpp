@@ -530,5 +530,32 @@ TEST(MohrCoulomb, yields_where_its_suction_says) {
   }
 }
 
+/// Soil that sees an average softens by it, and what it strains is added to its own strain. Points that stay elastic,
+/// in a block of their own or beside others, keep theirs to the bit.
+TEST(MohrCoulomb, softens_by_an_average_and_keeps_its_own_strain) {
+  MohrCoulomb law = mohr_coulomb(5e3, 30);
+  law.residual_cohesion = 0, law.residual_friction_angle = 15 * degree.si, law.shape_factor = 40;
+  const int count = 27;
+  Points<2> own(law, count);
+  std::vector<double> excess(count);
+  for (int i = 0; i < count; ++i) {
+    own.stress[i] = {-4e4, -4e4, -4e4, 0}, own.history[2 * i] = 1e-3 * i, excess[i] = 0.01 - 1e-4 * i;
+    own.increment[i].strain = {0, 0, 0, i < 8 || i % 3 ? 1e-6 : 0.05};
+  }
+  Points<2> seen = own;
+  for (int i = 0; i < count; ++i) seen.history[2 * i] += excess[i];
+  const std::vector<double> before = own.history, shown = seen.history;
+  StressPoints<2> view = own.view();
+  view.excess = excess.data(), view.averaged = 0;
+  update_stress<2>(law, view);
+  seen.update();
+  EXPECT_EQ(own.stress, seen.stress);
+  for (int i = 0; i < count; ++i) {
+    const double gain = seen.history[2 * i] - shown[2 * i];
+    EXPECT_EQ(own.history[2 * i], before[2 * i] + gain);
+    EXPECT_EQ(gain > 0, own.increment[i].strain[3] > 0.01);
+  }
+}
+
 }  // namespace
 }  // namespace talus
