@@ -14,7 +14,7 @@ StressPoints<dim> SoilMotion<dim, Phases>::stress_points(size_t b, double *stres
   const PointSet &p = points_[b];
   return {.count = p.count,
           .stress_in = p.stress,
-          .history_in = softening_.history(b, p),
+          .history_in = p.history,
           .stress_out = stress_out,
           .history_out = history_out,
           .cell = p.cell,
@@ -22,7 +22,9 @@ StressPoints<dim> SoilMotion<dim, Phases>::stress_points(size_t b, double *stres
           .size = softening_.size(b, grid_),
           .suction = find_suction(b),
           .cohesion_share = p.cohesion_share,
-          .friction_share = p.friction_share};
+          .friction_share = p.friction_share,
+          .excess = softening_.excess(b),
+          .averaged = softening_.field(b)};
 }
 
 /// What a law remembers of its state where plastic strain is not recorded, from `forgotten_`.
@@ -85,7 +87,6 @@ PetscErrorCode SoilMotion<dim, Phases>::deform(double t, const Vec<dim> *u, Stat
     StressPoints<dim> points = stress_points(b, to.stress[b], history);
     points.time_step = t - accepted_time_, points.time = accepted_time_;
     update_stress<dim>(bodies_[b]->law(), points);
-    softening_.restore(b, points_[b], history);
     if (!loading.softening && !trial) keep_history(b);
     update_volumes(b, history, to);
   }

@@ -116,7 +116,19 @@ void PrescribedPoreWater<dim>::sample(double time, const FilledGrid<dim> &grid, 
       for (int a = 0; a <= dim; ++a) value += sample.nodal[node[a]] * vertex_weight(grid, blend, c, a);
       sample.gradient[c] = gradient, sample.value[c] = value;
     }
+    find_body_force(grid, sample);
   }
+}
+
+/// -grad p on the soil in each cell.
+template <int dim>
+void PrescribedPoreWater<dim>::find_body_force(const FilledGrid<dim> &grid, Sample &sample) const {
+  if (!pressure_.open_water_load()) return;
+  if (sample.body_force.empty()) make_room(sample.body_force, mesh_.node_count());
+  std::fill_n(sample.body_force.begin(), grid.node_count(), Vec<dim>{});
+  for (int c = 0; c < grid.cell_count(); ++c)
+    for (int k = 0; k <= dim; ++k)
+      add_scaled<dim>(sample.body_force[grid.shape[c].node[k]], -grid.nodal_share[c][k], sample.gradient[c]);
 }
 
 /// Weights of the two samples at a time, times the ramp. A trial state beyond the later one sees the line go on.
@@ -130,19 +142,15 @@ template <int dim>
 void PrescribedPoreWater<dim>::add_force(const FilledGrid<dim> &grid, const SoilState<dim> &state, double time,
                                          double ramp, Vec<dim> *force) const {
   const auto [early, late] = shares(time, ramp);
-  for (int c = 0; c < grid.cell_count(); ++c) {
+  const bool open = pressure_.open_water_load();
+  for (int i = 0; open && i < grid.node_count(); ++i)
+    for (int d = 0; d < dim; ++d)
+      force[i][d] += early * sample_[0].body_force[i][d] + late * sample_[1].body_force[i][d];
+  for (int c = 0; (apart_ || !open) && c < grid.cell_count(); ++c) {
     const Shape<dim> &shape = state.shape[c];
     const auto &node = shape.node;
     double stress = apart_ ? early * sample_[0].jump[c] + late * sample_[1].jump[c] : 0;
-    if (pressure_.open_water_load()) {
-      for (int k = 0; k <= dim; ++k)
-        for (int d = 0; d < dim; ++d)
-          force[node[k]][d] -=
-              grid.nodal_share[c][k] * (early * sample_[0].gradient[c][d] + late * sample_[1].gradient[c][d]);
-      if (stress == 0) continue;
-    } else {
-      stress += early * sample_[0].value[c] + late * sample_[1].value[c];
-    }
+    if (!open) stress += early * sample_[0].value[c] + late * sample_[1].value[c];
     const double push = state.weight[c] * stress;
     for (int k = 0; k < dim; ++k)
       for (int d = 0; d < dim; ++d) {
@@ -164,7 +172,8 @@ const double *PrescribedPoreWater<dim>::suction(const FilledGrid<dim> &grid, con
 }
 
 template <int dim>
-void PrescribedPoreWater<dim>::serialize(Archive &archive, const typename FilledGrid<dim>::Rows &rows) {
+void PrescribedPoreWater<dim>::serialize(Archive &archive, const FilledGrid<dim> &grid,
+                                         const typename FilledGrid<dim>::Rows &rows) {
   archive.serialize("pore water", sample_time_, last_time_, table_moves_);
   archive.column(rows.nodes, "extra mass", extra_mass_);
   const bool sampled = sample_time_[1] > sample_time_[0];
@@ -175,6 +184,7 @@ void PrescribedPoreWater<dim>::serialize(Archive &archive, const typename Filled
     archive.column(rows.nodes, "nodal pore pressure", sample.nodal);
     archive.column(rows.cells, "suction", sample.suction);
     archive.column(rows.cells, "jump of pore pressure", sample.jump);
+    if (archive.reading()) find_body_force(grid, sample);
   }
 }
 

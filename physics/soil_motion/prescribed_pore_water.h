@@ -43,16 +43,18 @@ class PrescribedPoreWater {
   /// Pore water gained since seeding, which weighs but is not inert [node] [kg].
   const std::vector<double> &extra_mass() const { return extra_mass_; }
 
-  void serialize(Archive &archive, const typename FilledGrid<dim>::Rows &rows);
+  void serialize(Archive &archive, const FilledGrid<dim> &grid, const typename FilledGrid<dim>::Rows &rows);
 
  private:
   struct Sample {
     std::vector<Vec<dim>> gradient;      ///< [cell] [Pa/m]
+    std::vector<Vec<dim>> body_force;    ///< [node] of this rank, with open water on submerged faces [N]
     std::vector<double> value, suction;  ///< [cell] [Pa]
     std::vector<double> nodal;           ///< [node] of the common water [Pa]
     std::vector<double> jump;            ///< [cell] how far the mean of the soil's own water is above it [Pa]
   };
   PetscErrorCode measure(FilledGrid<dim> &grid, double time);
+  void find_body_force(const FilledGrid<dim> &grid, Sample &sample) const;
   void sample(double time, const FilledGrid<dim> &grid, const double *blend);
   std::array<double, 2> shares(double time, double ramp) const;
 

@@ -147,7 +147,6 @@ void SoilMotion<dim, Phases>::admit_mean_stress() {
     if (!strength_varies(bodies_[b]->law())) continue;
     const PointSet &p = points_[b];
     admit_stress<dim>(bodies_[b]->law(), stress_points(b, p.stress, p.history));
-    softening_.restore(b, p, p.history);
   }
 }
 

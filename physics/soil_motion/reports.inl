@@ -157,7 +157,7 @@ SofteningInput SoilMotion<dim, Phases>::softened_by(int b, int i) const {
   const PointSet &points = points_[b];
   const int q = transfer_.average_stress ? points.find(p.cell[i]) : i;
   found.plastic_strain = points.history[q * count + field];
-  if (softening_.averages(b)) found.plastic_strain += softening_.excess(b, q), found.size = 2 * body.averaging_length();
+  if (softening_.averages(b)) found.plastic_strain += softening_.excess(b)[q], found.size = 2 * body.averaging_length();
   return found;
 }
 
@@ -180,13 +180,13 @@ PetscErrorCode SoilMotion<dim, Phases>::serialize(Archive &archive) {
   std::vector<Archive::Rows> points(bodies_.size());
   for (size_t b = 0; b < bodies_.size(); ++b) {
     points[b] = serialize_points(archive, b);
-    softening_.serialize(b, archive, grid, points[b]);
+    softening_.serialize(b, archive, grid_, grid, points[b]);
   }
   accepted_.refer_to(grid_);
   archive.serialize("motion", gathered_, accepted_time_);
   measures_.serialize(archive);
   work_.serialize(archive);
-  if constexpr (Phases::prescribed) water_.serialize(archive, grid);
+  if constexpr (Phases::prescribed) water_.serialize(archive, grid_, grid);
   fastest_mode_.serialize(archive);
   PetscCall(conditions_.serialize(archive, grid_, filling_.impedance, filling_.share));
   if (archive.reading()) conditions_.surface_loads().begin(bodies_, grid_);

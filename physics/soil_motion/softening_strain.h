@@ -21,20 +21,14 @@ class SofteningStrain {
     }
   }
 
-  /// History of the points of a body as its law sees it.
-  const double *history(size_t body, const PointSet &points) {
-    return average_[body] ? average_[body]->averaged(points) : points.history;
-  }
+  /// By what the law of a body sees more plastic strain than its points have; null: by nothing.
+  const double *excess(size_t body) const { return average_[body] ? average_[body]->excess() : nullptr; }
+  /// Which internal variable that is, where there is an average.
+  int field(size_t body) const { return average_[body] ? average_[body]->field() : 0; }
   /// Width of a band, [cell] [m].
   const double *size(size_t body, const FilledGrid<dim> &grid) const {
     return average_[body] ? average_[body]->size() : grid.size.data();
   }
-  /// Turns a history that the law made of what it saw into that of the points.
-  void restore(size_t body, const PointSet &points, double *history) const {
-    if (average_[body]) average_[body]->restore(points, history);
-  }
-  /// By what the law sees more plastic strain at a point than is there.
-  double excess(size_t body, int point) const { return average_[body]->excess(point); }
   bool averages(size_t body) const { return average_[body] != nullptr; }
 
   /// At a remap, and after an accepted step. Collective.
@@ -50,9 +44,9 @@ class SofteningStrain {
       if (average_[b]) PetscCall(average_[b]->update(grid, points[b]));
     PetscFunctionReturn(0);
   }
-  void serialize(size_t body, Archive &archive, const typename FilledGrid<dim>::Rows &grid,
+  void serialize(size_t body, Archive &archive, const FilledGrid<dim> &grid, const typename FilledGrid<dim>::Rows &rows,
                  const Archive::Rows &points) {
-    if (average_[body]) average_[body]->serialize(archive, grid, points);
+    if (average_[body]) average_[body]->serialize(archive, grid, rows, points);
   }
 
  private:

@@ -38,11 +38,10 @@ NonlocalStrain<dim>::NonlocalStrain(const BackgroundMesh<dim> &mesh, double leng
   MPI_Allreduce(MPI_IN_PLACE, bounds, 2, MPI_DOUBLE, MPI_MAX, mesh.comm());
   least_ = -bounds[0], largest_ = std::min(bounds[1], dim + 1.);
   const std::size_t nodes = mesh.node_count(), cells = mesh.cell_count();
-  size_.assign(cells, 2 * length), make_room(volume_, cells), make_room(gradient_, cells);
-  make_room(cell_, cells), make_room(sums_, nodes);
+  size_.assign(cells, 2 * length), make_room(part_, cells), make_room(cell_, cells), make_room(sums_, nodes);
   for (auto *nodal : {&mass_, &over_diagonal_, &load_, &average_, &residual_, &direction_, &product_})
     make_room(*nodal, nodes);
-  make_room(excess_, cells), make_room(own_, cells), make_room(seen_, cells * history_count);
+  make_room(excess_, cells);
 }
 
 template <int dim>
@@ -50,20 +49,37 @@ int NonlocalStrain<dim>::iterations_to(double factor) const {
   return static_cast<int>(std::ceil(std::acosh(1 / factor) / std::acosh((largest_ + least_) / (largest_ - least_))));
 }
 
+/// Cells that hold soil of the body, with their couplings.
+template <int dim>
+void NonlocalStrain<dim>::find_parts(const FilledGrid<dim> &grid, const PointSet &points) {
+  std::fill_n(cell_.begin(), grid.cell_count(), std::array<double, 2>{});
+  for (int q = 0; q < points.count; ++q) cell_[points.cell[q]][0] += points.volume[q];
+  parts_ = 0;
+  for (int c = 0; c < grid.cell_count(); ++c) {
+    if (!(cell_[c][0] > 0)) continue;
+    Part &part = part_[parts_++];
+    part.cell = c, part.node = grid.shape[c].node, part.volume = cell_[c][0];
+    const auto g = gradients<dim>(grid.shape[c].gradient);
+    for (int k = 0, pair = 0; k <= dim; ++k)
+      for (int l = k + 1; l <= dim; ++l) part.coupling[pair++] = area_ * part.volume * dot<dim>(g[k], g[l]);
+  }
+}
+
 /// Nodal load of the points' own strain, with the volumes of the remap. Collective.
 template <int dim>
 PetscErrorCode NonlocalStrain<dim>::load(FilledGrid<dim> &grid, const PointSet &points) {
   PetscFunctionBeginUser;
-  std::fill_n(cell_.begin(), grid.cell_count(), std::array<double, 2>{});
+  for (int k = 0; k < parts_; ++k) cell_[part_[k].cell] = {};
   for (int q = 0; q < points.count; ++q) {
     auto &[volume, sum] = cell_[points.cell[q]];
     volume += points.volume[q], sum += points.volume[q] * points.history[q * history_count_ + field_];
   }
   std::fill_n(load_.begin(), grid.node_count(), 0.);
-  for (int c = 0; c < grid.cell_count(); ++c) {
-    const auto &[volume, sum] = cell_[c];
-    if (volume > 0)
-      for (int i : grid.shape[c].node) load_[i] += volume_[c] * (sum / volume) / (dim + 1);
+  for (int k = 0; k < parts_; ++k) {
+    const Part &part = part_[k];
+    const auto &[volume, sum] = cell_[part.cell];
+    const double share = part.volume * (sum / volume) * (1. / (dim + 1));
+    for (int i : part.node) load_[i] += share;
   }
   PetscCall(grid.sum(load_.data(), 1));
   PetscFunctionReturn(0);
@@ -72,15 +88,15 @@ PetscErrorCode NonlocalStrain<dim>::load(FilledGrid<dim> &grid, const PointSet &
 template <int dim>
 PetscErrorCode NonlocalStrain<dim>::begin(FilledGrid<dim> &grid, const PointSet &points) {
   PetscFunctionBeginUser;
-  const int nodes = grid.node_count(), cells = grid.cell_count();
-  std::fill_n(volume_.begin(), cells, 0.), std::fill_n(sums_.begin(), nodes, std::array<double, 2>{});
-  for (int q = 0; q < points.count; ++q) volume_[points.cell[q]] += points.volume[q];
-  for (int c = 0; c < cells; ++c) {
-    gradient_[c] = gradients<dim>(grid.shape[c].gradient);
+  const int nodes = grid.node_count();
+  find_parts(grid, points);
+  std::fill_n(sums_.begin(), nodes, std::array<double, 2>{});
+  for (int p = 0; p < parts_; ++p) {
+    const Part &part = part_[p];
+    const auto g = gradients<dim>(grid.shape[part.cell].gradient);
     for (int k = 0; k <= dim; ++k) {
-      auto &[mass, diagonal] = sums_[grid.shape[c].node[k]];
-      mass += volume_[c] / (dim + 1),
-          diagonal += volume_[c] * (1. / (dim + 1) + area_ * dot<dim>(gradient_[c][k], gradient_[c][k]));
+      auto &[mass, diagonal] = sums_[part.node[k]];
+      mass += part.volume / (dim + 1), diagonal += part.volume * (1. / (dim + 1) + area_ * dot<dim>(g[k], g[k]));
     }
   }
   PetscCall(grid.sum(sums_[0].data(), 2));
@@ -91,9 +107,7 @@ PetscErrorCode NonlocalStrain<dim>::begin(FilledGrid<dim> &grid, const PointSet 
     average_[i] = mass > 0 ? load_[i] / mass : 0;
   }
   PetscCall(iterate(grid, iterations_to(1e-8)));
-  if (static_cast<int>(excess_.size()) < points.count)  // particles as stress points
-    excess_.resize(points.count), own_.resize(points.count),
-        seen_.resize(static_cast<std::size_t>(points.count) * history_count_);
+  if (static_cast<int>(excess_.size()) < points.count) excess_.resize(points.count);  // particles as stress points
   spread(grid, points);
   PetscFunctionReturn(0);
 }
@@ -107,20 +121,22 @@ PetscErrorCode NonlocalStrain<dim>::update(FilledGrid<dim> &grid, const PointSet
   PetscFunctionReturn(0);
 }
 
-/// y = A x, summed over ranks.
+/// y = A x, summed over ranks. Where soil of this rank has not yielded, x is zero.
 template <int dim>
 PetscErrorCode NonlocalStrain<dim>::apply(FilledGrid<dim> &grid, const double *x, double *y) {
   PetscFunctionBeginUser;
   const int nodes = grid.node_count();
   std::fill_n(y, nodes, 0.);
-  for (int c = 0; c < grid.cell_count(); ++c) {
-    const auto &node = grid.shape[c].node;
-    const auto &g = gradient_[c];
-    Vec<dim> slope{};
-    for (int k = 0; k <= dim; ++k)
-      for (int d = 0; d < dim; ++d) slope[d] += x[node[k]] * g[k][d];
-    for (double &component : slope) component *= area_ * volume_[c];
-    for (int k = 0; k <= dim; ++k) y[node[k]] += dot<dim>(slope, g[k]);
+  const bool zero = std::all_of(x, x + nodes, [](double value) { return value == 0; });
+  for (int p = 0; !zero && p < parts_; ++p) {
+    const auto &[cell, node, volume, coupling] = part_[p];
+    std::array<double, dim + 1> sum{};
+    for (int k = 0, pair = 0; k <= dim; ++k)
+      for (int l = k + 1; l <= dim; ++l, ++pair) {
+        const double flow = coupling[pair] * (x[node[l]] - x[node[k]]);
+        sum[k] += flow, sum[l] -= flow;
+      }
+    for (int k = 0; k <= dim; ++k) y[node[k]] += sum[k];
   }
   PetscCall(grid.sum(y, 1));
   for (int i = 0; i < nodes; ++i) y[i] += mass_[i] * x[i];
@@ -158,41 +174,29 @@ PetscErrorCode NonlocalStrain<dim>::iterate(FilledGrid<dim> &grid, int iteration
 template <int dim>
 void NonlocalStrain<dim>::spread(const FilledGrid<dim> &grid, const PointSet &points) {
   for (int q = 0; q < points.count; ++q) {
-    double mean = 0;
-    for (int i : grid.shape[points.cell[q]].node) mean += average_[i] / (dim + 1);
-    excess_[q] = mean - points.history[q * history_count_ + field_];
+    double sum = 0;
+    for (int i : grid.shape[points.cell[q]].node) sum += average_[i];
+    excess_[q] = sum * (1. / (dim + 1)) - points.history[q * history_count_ + field_];
   }
 }
 
 template <int dim>
-const double *NonlocalStrain<dim>::averaged(const PointSet &points) {
-  std::copy_n(points.history, static_cast<std::size_t>(points.count) * history_count_, seen_.begin());
-  for (int q = 0; q < points.count; ++q) {
-    double &strain = seen_[q * history_count_ + field_];
-    own_[q] = strain, strain += excess_[q];
-  }
-  return seen_.data();
-}
-
-template <int dim>
-void NonlocalStrain<dim>::restore(const PointSet &points, double *history) const {
-  for (int q = 0; q < points.count; ++q) {
-    const int k = q * history_count_ + field_;
-    history[k] = own_[q] + (history[k] - seen_[k]);
-  }
-}
-
-template <int dim>
-void NonlocalStrain<dim>::serialize(Archive &archive, const typename FilledGrid<dim>::Rows &grid,
-                                    const Archive::Rows &points) {
-  archive.column(grid.cells, "volume of nonlocal strain", volume_);
-  archive.column(grid.cells, "gradients of nonlocal strain", gradient_);
-  archive.column(grid.nodes, "mass of nonlocal strain", mass_);
-  archive.column(grid.nodes, "diagonal of nonlocal strain", over_diagonal_);
-  archive.column(grid.nodes, "nonlocal strain", average_);
+void NonlocalStrain<dim>::serialize(Archive &archive, const FilledGrid<dim> &grid,
+                                    const typename FilledGrid<dim>::Rows &rows, const Archive::Rows &points) {
+  struct Kept {
+    double volume;
+    Couplings coupling;
+  };
+  std::vector<Kept> kept(grid.cell_count());  // no volume: no part
+  for (int p = 0; p < parts_ && !archive.reading(); ++p) kept[part_[p].cell] = {part_[p].volume, part_[p].coupling};
+  archive.column(rows.cells, "cells of nonlocal strain", kept);
+  parts_ = 0;
+  for (int c = 0; c < grid.cell_count(); ++c)
+    if (kept[c].volume > 0) part_[parts_++] = {c, grid.shape[c].node, kept[c].volume, kept[c].coupling};
+  archive.column(rows.nodes, "mass of nonlocal strain", mass_);
+  archive.column(rows.nodes, "diagonal of nonlocal strain", over_diagonal_);
+  archive.column(rows.nodes, "nonlocal strain", average_);
   archive.column(points, "excess of nonlocal strain", excess_);
-  archive.column(points, "own strain", own_);
-  archive.column(points, "history as seen", seen_, history_count_);
 }
 
 template class NonlocalStrain<2>;

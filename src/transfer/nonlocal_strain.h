@@ -25,18 +25,28 @@ class NonlocalStrain {
   /// After an accepted step: what is left of the error, and of the step's change, is halved at least. Collective.
   PetscErrorCode update(FilledGrid<dim> &grid, const PointSet &points);
 
-  /// History of the points with the average in place of their own plastic strain.
-  const double *averaged(const PointSet &points);
-  /// The average at a point less its own plastic strain, as the next step takes it.
-  double excess(int point) const { return excess_[point]; }
-  /// Puts back into `history`, which a law made of `averaged`, each point's own plastic strain with what it gained.
-  void restore(const PointSet &points, double *history) const;
+  /// The average at the points less their own plastic strain, as the next step takes it.
+  const double *excess() const { return excess_.data(); }
+  int field() const { return field_; }
   /// Writes what the next step depends on, or reads it.
-  void serialize(Archive &archive, const typename FilledGrid<dim>::Rows &grid, const Archive::Rows &points);
+  void serialize(Archive &archive, const FilledGrid<dim> &grid, const typename FilledGrid<dim>::Rows &rows,
+                 const Archive::Rows &points);
   /// What the law takes for the width of a band: 2 l in every cell [m].
   const double *size() const { return size_.data(); }
 
  private:
+  /// l^2 V grad N_a . grad N_b of two vertices: 01, 02, (03,) 12, (13, 23) [m3]. Rows of the matrix add up to the mass:
+  /// the diagonal needs no place.
+  using Couplings = std::array<double, dim *(dim + 1) / 2>;
+  /// A cell that holds soil of this body, at the remap.
+  struct Part {
+    int cell;
+    std::array<int, dim + 1> node;
+    double volume;  ///< of this body [m3]
+    Couplings coupling;
+  };
+
+  void find_parts(const FilledGrid<dim> &grid, const PointSet &points);
   PetscErrorCode load(FilledGrid<dim> &grid, const PointSet &points);
   PetscErrorCode apply(FilledGrid<dim> &grid, const double *x, double *y);
   PetscErrorCode iterate(FilledGrid<dim> &grid, int iterations);
@@ -45,15 +55,14 @@ class NonlocalStrain {
 
   double area_;  ///< l^2 [m2]
   int field_, history_count_;
-  double least_ = 1, largest_ = 1;                       ///< bounds of the eigenvalues of the scaled matrix
-  std::vector<double> size_;                             ///< [cells]
-  std::vector<double> volume_;                           ///< [cells] of this body, at the remap [m3]
-  std::vector<std::array<Vec<dim>, dim + 1>> gradient_;  ///< [cells] of the shape functions, at the remap [1/m]
-  std::vector<std::array<double, 2>> cell_;              ///< [cells] volume, and its product with the strain: room
-  std::vector<std::array<double, 2>> sums_;              ///< [nodes] volume and diagonal: room for sums over ranks
+  double least_ = 1, largest_ = 1;  ///< bounds of the eigenvalues of the scaled matrix
+  std::vector<double> size_;        ///< [cells]
+  std::vector<Part> part_;          ///< of which the first `parts_` count
+  int parts_ = 0;
+  std::vector<std::array<double, 2>> cell_;  ///< [cells] volume, and its product with the strain: room
+  std::vector<std::array<double, 2>> sums_;  ///< [nodes] volume and diagonal: room for sums over ranks
   std::vector<double> mass_, over_diagonal_, load_, average_, residual_, direction_, product_;  ///< [nodes]
-  std::vector<double> excess_, own_,
-      seen_;  ///< [points]: average less own, own, and [points][history] as the law sees it
+  std::vector<double> excess_;                                                                  ///< [points]
 };
 
 }  // namespace talus
