@@ -7,8 +7,8 @@ namespace talus {
 bool decompose_exactly(const Gradient<2> &g, Increment<2> &out) {
   const PlaneStretch stretch(g);
   if (!(stretch.volume > -1)) return false;
-  const double ratio = stretch.q / stretch.m;
-  const double slope = ratio < 1e-3 ? (1 + ratio * ratio / 3) / stretch.m : std::atanh(ratio) / stretch.q;
+  const double q = std::sqrt(stretch.q2), ratio = q / stretch.m;
+  const double slope = ratio < 1e-3 ? (1 + ratio * ratio / 3) / stretch.m : std::atanh(ratio) / q;
   out = stretch.increment(std::log1p(stretch.volume) / 2, slope);
   return true;
 }

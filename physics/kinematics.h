@@ -33,11 +33,11 @@ bool decompose(const Gradient<dim> &g, Increment<dim> &increment) {
 
 /// ln(1 + x) by its series, for |x| < 1e-3.
 [[gnu::always_inline]] inline double log1p_series(double x) {
-  return x * (1 - x * (1. / 2 - x * (1. / 3 - x * (1. / 4 - x / 5))));
+  return x * (1 - x * (1. / 2 - x * (1. / 3 - x * (1. / 4 - x * (1. / 5)))));
 }
 /// exp(x), by its series where the library's function would cost more than the rest of a cell.
 inline double exp_small(double x) {
-  return std::abs(x) < 1e-3 ? 1 + x * (1 + x * (1. / 2 + x * (1. / 6 + x * (1. / 24 + x / 120)))) : std::exp(x);
+  return std::abs(x) < 1e-3 ? 1 + x * (1 + x * (1. / 2 + x * (1. / 6 + x * (1. / 24 + x * (1. / 120))))) : std::exp(x);
 }
 
 /// In the plane the rotation of F is the angle of (F00 + F11, F10 - F01), and U = R^T F is symmetric. Differences are
@@ -45,15 +45,17 @@ inline double exp_small(double x) {
 struct PlaneStretch {
   double volume;      ///< det F - 1
   double c, s;        ///< cos and sin of the rotation
-  double m, d, o, q;  ///< U = m I + [d o; o -d], whose stretches are m + q and m - q
+  double m, d, o;     ///< U = m I + [d o; o -d], whose stretches are m + q and m - q
+  double over_m, q2;  ///< 1 / m and q^2
 
   [[gnu::always_inline]] explicit PlaneStretch(const Gradient<2> &g) {
     const auto &[xx, xy, yx, yy] = g;
     volume = xx + yy + (xx * yy - xy * yx);
     const double a = 2 + xx + yy, b = yx - xy, r = std::sqrt(a * a + b * b);
-    c = a / r, s = b / r, m = r / 2;
+    const double over_r = 1 / r;
+    c = a * over_r, s = b * over_r, m = r / 2, over_m = 2 * over_r;
     d = (c * (xx - yy) + s * (yx + xy)) / 2, o = (c * (xy + yx) + s * (yy - xx)) / 2;
-    q = std::sqrt(d * d + o * o);
+    q2 = d * d + o * o;
   }
   /// ln U = ln sqrt(det F) I + slope (U - m I), where `mean` is the first of these factors.
   [[gnu::always_inline]] Increment<2> increment(double mean, double slope) const {
@@ -65,9 +67,9 @@ template <>
 [[gnu::always_inline]] inline bool decompose_small<2>(const Gradient<2> &g, Increment<2> &out) {
   constexpr double small = small_increment / 10;
   const PlaneStretch stretch(g);
-  const double ratio = stretch.q / stretch.m;
-  out = stretch.increment(log1p_series(stretch.volume) / 2, (1 + ratio * ratio / 3) / stretch.m);
-  return (std::abs(stretch.volume) < small) & (ratio < small);
+  const double ratio2 = stretch.q2 * stretch.over_m * stretch.over_m;
+  out = stretch.increment(log1p_series(stretch.volume) / 2, (1 + ratio2 * (1. / 3)) * stretch.over_m);
+  return (std::abs(stretch.volume) < small) & (ratio2 < small * small);
 }
 
 /// Midpoint rule (Hughes & Winget 1980), its strain turned back by half the rotation: exact for rigid rotation, errs by

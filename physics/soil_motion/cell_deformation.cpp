@@ -16,8 +16,11 @@ struct CellBlock {
   Block<stress_size<dim>> strain;
   Block<rotations> rotation;
   Block<dim * dim> displacement_gradient;
-  Block<1> volume, small, squares;
+  Block<1> volume, small;
+  Block<1> slenderness, mesh_volume;  ///< at the remap and in the mesh
+  Block<1> slenderest, smallest;      ///< WorstCell of all blocks so far
 
+  CellBlock() { slenderest.fill(1), smallest.fill(1); }
   [[gnu::always_inline]] void load(const Vec<dim> *u, const Vec<dim> *x, const Shape<dim> *const shape[lanes]) {
     const double *from[lanes];
     for (int k = 0; k < vertices; ++k) {
@@ -54,7 +57,9 @@ struct CellBlock {
 #pragma GCC unroll 3
       for (int d = 0; d < dim; ++d) sum += at_end[k][d] * at_end[k][d], gradient.value[dim * k + d][i] = at_end[k][d];
     }
-    squares.value[0][i] = sum;
+    const double slender = sum / slenderness.value[0][i], left = volume.value[0][i] / mesh_volume.value[0][i];
+    slenderest.value[0][i] = slender > slenderest.value[0][i] ? slender : slenderest.value[0][i];
+    smallest.value[0][i] = left < smallest.value[0][i] ? left : smallest.value[0][i];
   }
 };
 
@@ -76,13 +81,20 @@ WorstCell deform_cells(const FilledGrid<dim> &grid, const Vec<dim> *u, const Vec
   for (int first = 0; first < cells; first += lanes) {
     const int filled = std::min(lanes, cells - first);
     const Shape<dim> *shape[lanes];
-    for (int i = 0; i < lanes; ++i) shape[i] = from + first + std::min(i, filled - 1);  // the last one is repeated
-    block.load(u, position, shape);
+    const double *slender[lanes], *whole[lanes];
+    double *strain[lanes], *rotation[lanes], *gradient[lanes];
+    for (int i = 0; i < lanes; ++i) {
+      const int c = first + std::min(i, filled - 1);  // the last one is repeated
+      shape[i] = from + c, slender[i] = slenderness + c, whole[i] = &mesh_volume[grid.mesh_cell[c]];
+      strain[i] = increment[c].strain.data(), rotation[i] = increment[c].rotation.data();
+      gradient[i] = to[c].gradient[0].data();
+    }
+    block.load(u, position, shape), block.slenderness.load(slender), block.mesh_volume.load(whole);
 #pragma omp simd
     for (int i = 0; i < lanes; ++i) block.deform(i);
+    block.strain.store(strain), block.rotation.store(rotation), block.gradient.store(gradient);
     for (int i = 0; i < filled; ++i) {
       const int c = first + i;
-      block.strain.store(i, increment[c].strain.data()), block.rotation.store(i, increment[c].rotation.data());
       if (block.small.value[0][i] == 0 &&
           !decompose_exactly(take<Gradient<dim>>(block.displacement_gradient, i), increment[c])) {
         worst.volume = -1, worst.inverted = true;
@@ -90,11 +102,12 @@ WorstCell deform_cells(const FilledGrid<dim> &grid, const Vec<dim> *u, const Vec
       }
       volume_strain[c] = trace<dim>(increment[c]);
       to[c].node = from[c].node;
-      block.gradient.store(i, to[c].gradient[0].data());
       to[c].volume = block.volume.value[0][i];
-      worst.slenderness = std::max(worst.slenderness, block.squares.value[0][i] / slenderness[c]);
-      worst.volume = std::min(worst.volume, to[c].volume / mesh_volume[grid.mesh_cell[c]]);
     }
+  }
+  for (int i = 0; i < lanes; ++i) {
+    worst.slenderness = std::max(worst.slenderness, block.slenderest.value[0][i]);
+    worst.volume = std::min(worst.volume, block.smallest.value[0][i]);
   }
   return worst;
 }
