@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char *first_line = "Talus checkpoint 8\n";
+constexpr const char *first_line = "Talus checkpoint 9\n";
 
 std::string header_file(const std::string &dir) { return dir + "/checkpoint/header"; }
 std::string header_before(const std::string &dir) { return header_file(dir) + ".before"; }
@@ -31,9 +31,7 @@ std::string state_name(long long number, int rank) {
 /// Writes `content` behind a line that says what the file is and a fingerprint that shows damage.
 void save(const std::string &path, const std::string &content) {
   const auto sum = fingerprint(content.data(), content.size());
-  std::string file = first_line;
-  file.append(reinterpret_cast<const char *>(&sum), sizeof sum);
-  replace_file(path, file + content);
+  replace_file(path, {first_line, {reinterpret_cast<const char *>(&sum), sizeof sum}, content});
 }
 
 std::string load(const std::string &path) {

@@ -66,10 +66,13 @@ class OutputFields {
 
   const std::vector<OutputField<Point>> &list() const { return list_; }
 
-  /// The columns of a snapshot without points.
-  std::vector<Column> columns() const {
+  /// The columns of a snapshot without points, with room for so many.
+  std::vector<Column> columns(std::size_t points) const {
     std::vector<Column> columns;
-    for (const auto &field : list_) columns.push_back({field.name, field.unit, field.meaning, field.components, {}});
+    for (const auto &field : list_) {
+      columns.push_back({field.name, field.unit, field.meaning, field.components, {}});
+      columns.back().values.reserve(points * field.components);
+    }
     return columns;
   }
   /// Adds a point to the columns, which are those of `columns()`.

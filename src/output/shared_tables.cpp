@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <stdexcept>
+#include <utility>
 
 #include "output/together.h"
 
@@ -19,8 +20,9 @@ void remove_parts(const std::string &path, std::size_t from) {
   while (fs::remove(part_of(path, from))) ++from;
 }
 
-void add_rows(Hdf5Builder &file, const Table &table) {
-  std::visit([&](const auto &values) { file.dataset(table.name, values, table.columns); }, table.values);
+/// Moves the rows of a table into the file.
+void add_rows(Hdf5Builder &file, Table &table) {
+  std::visit([&](auto &values) { file.dataset(table.name, std::exchange(values, {}), table.columns); }, table.values);
 }
 
 void add_joined(Hdf5Builder &file, const Table &table, const std::string &path) {
@@ -33,7 +35,7 @@ void add_joined(Hdf5Builder &file, const Table &table, const std::string &path) 
 
 }  // namespace
 
-void write_tables(MPI_Comm comm, const std::string &path, int writer, const std::vector<Table> &tables,
+void write_tables(MPI_Comm comm, const std::string &path, int writer, std::vector<Table> tables,
                   const std::function<void(Hdf5Builder &)> &about) {
   const std::size_t writers = tables.at(0).rows.size();
   const bool joined = writers > 1, mine = joined && writer >= 0;
@@ -42,12 +44,12 @@ void write_tables(MPI_Comm comm, const std::string &path, int writer, const std:
     together(comm, [&] {
       if (!mine) return;
       Hdf5Builder file(part);
-      for (const Table &table : tables) add_rows(file, table);
+      for (Table &table : tables) add_rows(file, table);
       file.save();
     });
     on_first_rank(comm, [&] {
       Hdf5Builder file(path);
-      for (const Table &table : tables) joined ? add_joined(file, table, path) : add_rows(file, table);
+      for (Table &table : tables) joined ? add_joined(file, table, path) : add_rows(file, table);
       about(file);
       file.save();
       remove_parts(path, joined ? writers : 0);  // of an earlier file of this name

@@ -21,9 +21,9 @@ struct Table {
 };
 
 /// Writes the tables of a file, which ends in ".h5". `writer` is the number of this rank among the writers, -1 where it
-/// is none; `about` adds attributes on the first rank. Collective. On failure nothing new stays, and std::runtime_error
-/// says path and cause on all ranks.
-void write_tables(MPI_Comm comm, const std::string &path, int writer, const std::vector<Table> &tables,
+/// is none; `about` adds attributes on the first rank. A table is given up once the file in memory has it. Collective.
+/// On failure nothing new stays, and std::runtime_error says path and cause on all ranks.
+void write_tables(MPI_Comm comm, const std::string &path, int writer, std::vector<Table> tables,
                   const std::function<void(Hdf5Builder &)> &about);
 
 /// Removes a file and those that it joins.

@@ -190,11 +190,11 @@ void RunFile::write_mesh(MeshPicture local_mesh) {
   }
   hand_back_freed_memory();
   on_first_rank(comm_, [&] { make_folder(dir_ + "/run"); });
-  write_tables(comm_, path_of(mesh_file), writer, tables, [&](Hdf5Builder &file) {
+  dimension_ = dim, nodes_ = sum(tables[0].rows), cells_ = sum(tables[1].rows);
+  write_tables(comm_, path_of(mesh_file), writer, std::move(tables), [&](Hdf5Builder &file) {
     file.attribute("/", "dimension", static_cast<long long>(dim));
     file.attribute("node_position", "unit", std::string("m"));
   });
-  dimension_ = dim, nodes_ = sum(tables[0].rows), cells_ = sum(tables[1].rows);
 }
 
 /// Writes the mesh, then does what `rest` says on the first rank.
@@ -209,19 +209,19 @@ void RunFile::begin(const RunHeader &header, MeshPicture local_mesh, const std::
   });
 }
 
-void RunFile::write(const Snapshot &local) {
+void RunFile::write(Snapshot local) {
   together(comm_, [&] { check_lengths(local); });
   const std::string number = numbered(count_);
   const Writers writers(comm_, local.id, Writers::needed(comm_, {local.id.size()}, most_rows_));
   Entry entry{number, local.time, local.step, sum(writers.rows()), {}};
-  std::vector<Table> tables = {{"id", 1, writers.collect(local.id), writers.rows()},
+  std::vector<Table> tables = {{"id", 1, writers.collect(std::move(local.id)), writers.rows()},
                                {"body", 1, writers.collect(widened(local.body)), writers.rows()}};
-  for (const auto &column : local.columns) {
+  for (auto &column : local.columns) {  // in place of another copy of all numbers
     tables.push_back(
-        {column.name, column.components, writers.collect(column.values, column.components), writers.rows()});
+        {column.name, column.components, writers.collect(std::move(column.values), column.components), writers.rows()});
     entry.columns.push_back({column.name, column.unit, column.components});
   }
-  write_tables(comm_, path_of(snapshot_file(number)), writers.mine(), tables, [&](Hdf5Builder &file) {
+  write_tables(comm_, path_of(snapshot_file(number)), writers.mine(), std::move(tables), [&](Hdf5Builder &file) {
     file.attribute("/", "time", local.time);
     file.attribute("/", "step", local.step);
     file.attribute("/", "stage", local.stage);

@@ -56,7 +56,7 @@ class RunFile {
                         long long count, long long rows = rows_of_a_writer);
 
   /// Adds a snapshot. Ranks without particles pass columns without values.
-  void write(const Snapshot &local);
+  void write(Snapshot local);
 
   /// Step of the last snapshot; -1 if there is none.
   long long last_step() const { return last_step_; }

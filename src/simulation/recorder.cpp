@@ -251,6 +251,7 @@ template <int dim>
 void Recorder<dim>::write_history() {
   require(of_.world.motion->begin_results(of_.clock.time));
   if (last_row_step_ == of_.clock.steps) return;
+  of_.world.count_cells();
   std::vector<double> row = point_rows_.at(of_.clock.time, of_.statics);
   of_.lines.write(of_.clock, of_.statics);
   last_row_step_ = of_.clock.steps, last_row_time_ = of_.clock.time;
@@ -312,7 +313,9 @@ Snapshot Recorder<dim>::particles() {
   s.numbers.emplace_back("longest_step_s", sums.longest);
   const auto &bodies = of_.world.bodies;
   const auto fields = output_fields<ParticleState<dim>>(phases_, bodies);
-  s.columns = fields.columns();
+  std::size_t count = 0;
+  for (const auto &body : bodies) count += body->particles().count;
+  s.columns = fields.columns(count);
   for (int b = 0; b < static_cast<int>(bodies.size()); ++b) {
     const ParticleArrays<dim> &p = bodies[b]->particles();
     for (int i = 0; i < p.count; ++i) {

@@ -415,9 +415,11 @@ Snapshot Statics<dim>::gauss_points() const {
   Snapshot s;
   s.time = clock_.time, s.step = clock_.steps, s.stage = clock_.stage;
   const auto fields = output_fields<GaussPointState<dim>>(world_.phases, world_.bodies);
-  s.columns = fields.columns();
   const SoilElements<dim> &soil = problem_->soil();
   const int per_cell = soil.points_per_cell();
+  std::size_t count = 0;
+  for (const GaussPoints<dim> &p : soil.points()) count += p.present ? p.count() : 0;
+  s.columns = fields.columns(count);
   for (int b = 0; b < static_cast<int>(world_.bodies.size()); ++b) {
     const GaussPoints<dim> &p = soil.points()[b];
     if (!p.present) continue;

@@ -32,7 +32,7 @@ OutputFields<Point> three_fields() {
 
 TEST(OutputFields, fill_the_columns_of_a_snapshot) {
   const auto fields = three_fields();
-  auto columns = fields.columns();
+  auto columns = fields.columns(3);
   fields.append({{1, 2}, {3, 4}, 5}, columns);
   fields.append({{6, 7}, {8, 9}, -1}, columns);
   ASSERT_EQ(columns.size(), 6u);
@@ -95,7 +95,7 @@ TEST(OutputFields, of_laws_are_not_a_number_where_a_body_has_another_law) {
   ASSERT_EQ(bodies[0]->create(MPI_COMM_SELF, source, MohrCoulomb{}, 0, 0), 0);
   ASSERT_EQ(bodies[1]->create(MPI_COMM_SELF, source, LinearElastic{}, 0, 0), 0);
   const auto fields = output_fields<GaussPointState<2>>(traits_of<Dry>, bodies);
-  auto columns = fields.columns();
+  auto columns = fields.columns(3);
   const double history[] = {0.25, 0.5};
   GaussPointState<2> point;
   point.history = history;
