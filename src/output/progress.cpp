@@ -124,7 +124,8 @@ std::string Progress::describe(double clock) const {
   const double elapsed = clock - printed_at_, advanced = now_.time - printed_.time;
   std::string line = state();
   if (!estimates_ || elapsed <= 0 || advanced <= 0) return line;
-  line += "  " + short_number((now_.updates - printed_.updates) / elapsed) + " updates/s";
+  line += "  " + short_number((now_.particles - printed_.particles) / elapsed) + " particles/s, " +
+          short_number((now_.cells - printed_.cells) / elapsed) + " cells/s";
   if (now_.time < total_) line += "  at this rate " + duration((total_ - now_.time) / advanced * elapsed) + " left";
   return line;
 }

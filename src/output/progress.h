@@ -29,10 +29,11 @@ class Progress {
   /// takes; finite elements take no longer for a longer stage.
   void stage(const std::string &name, bool to_the_end = true);
 
-  /// A step is done: simulated time [s], number of the step, and the number of particles (of all ranks) that it moved.
-  void step(double time, long long number, long long particles) {
+  /// A step is done: simulated time [s], number of the step, and the numbers (of all ranks) of particles that it moved
+  /// and of cells that hold them.
+  void step(double time, long long number, long long particles, long long cells) {
     if (!prints_) return;
-    now_ = {time, number, now_.updates + static_cast<double>(particles)};
+    now_ = {time, number, now_.particles + static_cast<double>(particles), now_.cells + static_cast<double>(cells)};
     if (--until_clock_ <= 0) look_at_clock();
   }
 
@@ -41,7 +42,7 @@ class Progress {
 
   /// The run goes on from here, which lies beyond its end where its stages have become shorter.
   void resume(double time, long long number) {
-    now_ = printed_ = {time, number, 0};
+    now_ = printed_ = {time, number};
     total_ = std::max(total_, time);
   }
 
@@ -58,7 +59,7 @@ class Progress {
   struct State {
     double time = 0;  ///< simulated [s]
     long long step = 0;
-    double updates = 0;  ///< particles moved so far
+    double particles = 0, cells = 0;  ///< updated so far
   };
   void look_at_clock();
   void tell(const std::string &line, double clock);  ///< where a line is due

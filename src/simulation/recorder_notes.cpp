@@ -23,7 +23,8 @@ void Recorder<dim>::begin_stage(const Stage &stage) {
 
 template <int dim>
 void Recorder<dim>::progress() {
-  if (results_) results_->progress.step(of_.clock.time, of_.clock.steps, of_.world.particle_count);
+  if (results_)
+    results_->progress.step(of_.clock.time, of_.clock.steps, of_.world.particle_count, of_.world.cell_count);
   if (told_escaped_ == 0) note_escaped();
 }
 

@@ -92,6 +92,7 @@ class World {
   PetscErrorCode serialize(Archive &archive);
   /// Work that this rank has in a step (simulation/work.h), of `steps` since the last remap; 0: the usual number.
   double work_of_rank(long long steps) const;
+  void count_cells();  ///< those that hold soil now; collective
   /// The filled cells of this rank with their work, after a remap that followed on `steps` steps of `step` seconds.
   std::vector<FilledCell<dim>> work_of_cells(double step, long long steps) const;
   /// Divides the mesh among the ranks in another way. Particles, and all that nodes and cells hold, are gone:
@@ -114,6 +115,7 @@ class World {
   Conditions<dim> conditions;
   std::unique_ptr<AnySoilMotion<dim>> motion;
   long long particle_count = 0;   ///< of all ranks
+  long long cell_count = 0;       ///< of all ranks, that held soil when they were last counted
   double total_mass = 0;          ///< of all ranks [kg]
   EscapedParticles<dim> escaped;  ///< particles that were taken out because they left the mesh
   Breakdown breakdown;            ///< where the time of steps and remaps went

@@ -40,6 +40,12 @@ void World<dim>::count_runs() {
   }
 }
 
+template <int dim>
+void World<dim>::count_cells() {
+  long long mine = motion->grid().cell_count();
+  MPI_Allreduce(&mine, &cell_count, 1, MPI_LONG_LONG, MPI_SUM, comm);
+}
+
 /// Particles change places in memory when they are sorted: what is kept of the movers is their cells.
 template <int dim>
 void World<dim>::count_movers() {
@@ -97,6 +103,8 @@ void World<dim>::divide(const Cuts &cuts) {
 
 template double World<2>::work_of_rank(long long) const;
 template double World<3>::work_of_rank(long long) const;
+template void World<2>::count_cells();
+template void World<3>::count_cells();
 template void World<2>::count_runs();
 template void World<3>::count_runs();
 template void World<2>::count_movers();

@@ -28,7 +28,7 @@ Spoken spoken(const SharedFolder &folder, int seconds) {
     progress.stage("slide");
     for (int n = 1; n <= 100 * seconds; ++n) {
       now += 0.01;
-      progress.step(1e-3 * n, n, 1000);
+      progress.step(1e-3 * n, n, 1000, 300);
     }
     progress.note("the slope failed");
     progress.finish();
@@ -48,7 +48,7 @@ TEST(Progress, tells_rate_and_remaining_time_now_and_then) {
   }
   EXPECT_EQ(lines_of(said.screen), 8) << said.screen;  // at 2, 12, 22, 32, 42, 52 s; the note; the end
   EXPECT_NE(said.screen.find("slide  t = 1.215 of 1000 s  step 1215  "), std::string::npos) << said.screen;
-  EXPECT_NE(said.screen.find("100 k updates/s"), std::string::npos) << said.screen;
+  EXPECT_NE(said.screen.find("100 k particles/s, 30 k cells/s"), std::string::npos) << said.screen;
   EXPECT_NE(said.screen.find("at this rate 2 h 46 min left"), std::string::npos) << said.screen;
   EXPECT_NE(said.screen.find("the slope failed\n"), std::string::npos);
   EXPECT_EQ(lines_of(said.log), 4) << said.log;  // the stage, at 2 s, the note, the end
@@ -91,9 +91,9 @@ TEST(Progress, says_what_is_left_only_where_all_that_is_left_moves) {
   const SharedFolder folder;
   const std::string said = said_of(folder, 100, [](Progress &progress, double &now) {
     progress.stage("gravity", false);
-    for (int n = 1; n <= 20; ++n) now += 5, progress.step(1e-2 * n, n, 1000);
+    for (int n = 1; n <= 20; ++n) now += 5, progress.step(1e-2 * n, n, 1000, 300);
     progress.stage("slide");
-    for (int n = 1; n <= 20; ++n) now += 5, progress.step(0.2 + n, 20 + n, 1000);
+    for (int n = 1; n <= 20; ++n) now += 5, progress.step(0.2 + n, 20 + n, 1000, 300);
   });
   if (world_rank()) return;
   const std::string gravity = said.substr(0, said.find("slide  t")),
@@ -109,7 +109,7 @@ TEST(Progress, says_that_little_is_left) {
   const SharedFolder folder;
   const std::string said = said_of(folder, 1, [](Progress &progress, double &now) {
     progress.stage("slide");
-    for (int n = 1; n <= 95; ++n) now += 0.025, progress.step(0.01 * n, n, 1000);
+    for (int n = 1; n <= 95; ++n) now += 0.025, progress.step(0.01 * n, n, 1000, 300);
   });
   if (world_rank()) return;
   EXPECT_NE(said.find("at this rate less than 1 s left"), std::string::npos) << said;
@@ -120,7 +120,7 @@ TEST(Progress, is_told_also_where_the_first_step_is_quick) {
   const SharedFolder folder;
   const std::string said = said_of(folder, 1000, [](Progress &progress, double &now) {
     progress.stage("slide");
-    for (int n = 1; n <= 1000; ++n) now += n == 1 ? 1e-6 : 0.05, progress.step(n, n, 1000);
+    for (int n = 1; n <= 1000; ++n) now += n == 1 ? 1e-6 : 0.05, progress.step(n, n, 1000, 300);
   });
   if (world_rank()) return;
   EXPECT_EQ(lines_of(said), 5) << said;  // at 2, 12, ... 42 s
