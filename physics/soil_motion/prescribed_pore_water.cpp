@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/room.h"
 #include "meshes/locate.h"
@@ -72,9 +73,11 @@ void PrescribedPoreWater<dim>::sample(double time, const FilledGrid<dim> &grid, 
   constexpr double steps_ahead = 16;
   if (time >= sample_time_[0] && time <= sample_time_[1]) return;
   const double step = last_time_ < time ? time - last_time_ : 1e-6 * (1 + std::abs(time));
-  sample_time_[0] = time, sample_time_[1] = time + steps_ahead * step;
+  const bool goes_on = sample_time_[1] < time && time < sample_time_[1] + steps_ahead * step;
+  sample_time_[0] = goes_on ? sample_time_[1] : time, sample_time_[1] = time + steps_ahead * step;
   table_moves_ = pressure_.moves();
-  for (int k = 0; k < 2; ++k) {
+  if (goes_on) std::swap(sample_[0], sample_[1]);  // the later sample becomes the earlier one
+  for (int k = goes_on ? 1 : 0; k < 2; ++k) {
     Sample &sample = sample_[k];
     const size_t nodes = mesh_.node_count(), cells = mesh_.cell_count();
     const auto all = [](auto &values, size_t count) {  // those of a checkpoint are as many as there was soil
