@@ -5,8 +5,23 @@
 #include "base/local_numbers.h"
 #include "base/room.h"
 #include "physics/boundary/node_normals.h"
+#include "physics/boundary/rigid_bodies.h"
+#include "scene/rigid_source.h"
 
 namespace talus {
+
+template <int dim>
+Conditions<dim>::Conditions() = default;
+template <int dim>
+Conditions<dim> &Conditions<dim>::operator=(Conditions &&) noexcept = default;
+template <int dim>
+Conditions<dim>::~Conditions() = default;
+
+template <int dim>
+void Conditions<dim>::take_rigid_bodies(std::unique_ptr<RigidBodies<dim>> bodies) {
+  rigid_ = std::move(bodies);
+  work_.resize(sources_.size() + rigid_->sources().size(), 0);
+}
 
 template <int dim>
 PetscErrorCode Conditions<dim>::setup(const BackgroundMesh<dim> &mesh, std::vector<Source> sources) {
@@ -76,6 +91,7 @@ PetscErrorCode Conditions<dim>::begin(FilledGrid<dim> &grid, const std::vector<s
     if (!stand_ins_ && grid.find_node(r.node) >= 0)
       active_frozen_.push_back({grid.find_node(r.node), r.source, r.value});
   PetscCall(bases_.begin(grid, filling));
+  if (rigid_) PetscCall(rigid_->search(grid));
   if (!dashpots_.empty()) {
     constexpr int width = dim * dim;
     for (const auto &[source, column, facets] : dashpots_) {
@@ -183,6 +199,7 @@ void Conditions<dim>::add_work(const Vec<dim> *u) {
       if (counted_[r.node]) work_[r.source] += dot<dim>(r.value, u[r.node]);
   surface_loads_.add_work(u, work_);
   bases_.add_slip(u);
+  if (rigid_) rigid_->advance(u, &work_[sources_.size()]);
 }
 
 template <int dim>
@@ -192,16 +209,24 @@ void Conditions<dim>::constrain(double t, const FilledGrid<dim> &grid, Vec<dim> 
 }
 
 template <int dim>
+void Conditions<dim>::follow_rigid_bodies(Vec<dim> *w) const {
+  if (rigid_) rigid_->follow(w);
+}
+
+template <int dim>
 void Conditions<dim>::project(const Vec<dim> *v, Vec<dim> *force) {
   see_columns(v);
   for (const Dashpot &d : active_dashpots_)
     map<dim>(force[d.node]) -= d.matrix * (map<dim>(v[d.node]) - map<dim>(d.beyond));
   bases_.project(prescribed_, v, force);
+  if (rigid_) rigid_->project(v, force);
   for (const ActivePrescribed &p : prescribed_.active()) p.condition->take_from(force[p.node]);
 }
 
 template <int dim>
-void Conditions<dim>::resolve(double t, double gamma, const FilledGrid<dim> &grid, Vec<dim> *v, const Pores &pores) {
+PetscErrorCode Conditions<dim>::resolve(double t, double gamma, const FilledGrid<dim> &grid, Vec<dim> *v,
+                                        const Pores &pores) {
+  PetscFunctionBeginUser;
   const auto account = [&](int node, int source, const Vec<dim> &change) {
     if (!counted_[node]) return;
     Reaction r{node, source, {}};
@@ -235,6 +260,8 @@ void Conditions<dim>::resolve(double t, double gamma, const FilledGrid<dim> &gri
       add_scaled<dim>(before, -dot<dim>(p.change, direction), direction);
       account(p.node, p.condition->source[k], difference(v[p.node], before));
     }
+  if (rigid_) PetscCall(rigid_->resolve({t, gamma, grid, prescribed_, bases_}, v));
+  PetscFunctionReturn(0);
 }
 
 template <int dim>
@@ -266,6 +293,7 @@ PetscErrorCode Conditions<dim>::serialize(Archive &archive, FilledGrid<dim> &gri
   }
   archive.sums("boundaries", impulse_, work_);
   bases_.serialize(archive, grid);
+  if (rigid_) rigid_->serialize(archive, grid);
   PetscFunctionReturn(0);
 }
 

@@ -4,6 +4,7 @@
 /// act where facets have soil behind them.
 #include <algorithm>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -19,11 +20,19 @@
 namespace talus {
 
 template <int dim>
+class RigidBodies;  // physics/boundary/rigid_bodies.h
+
+template <int dim>
 class Conditions {
  public:
   using Source = NamedBoundary;
+  Conditions();
+  Conditions &operator=(Conditions &&) noexcept;
+  ~Conditions();
   /// Collects nodes and normals of all groups, also of facets that only a neighbouring rank has. Collective.
   PetscErrorCode setup(const BackgroundMesh<dim> &mesh, std::vector<Source> sources);
+  /// Rigid bodies that the soil meets, after `setup`.
+  void take_rigid_bodies(std::unique_ptr<RigidBodies<dim>> bodies);
   /// Picks the nodes and facets of the filled grid. `impedance` [filled cells] holds rho c_p and rho c_s. Collective.
   PetscErrorCode begin(FilledGrid<dim> &grid, const std::vector<std::array<double, 2>> &impedance,
                        const std::vector<double> &filling);
@@ -52,6 +61,9 @@ class Conditions {
     for (const Dashpot &d : active_dashpots_)
       if (!sources_[d.source].kind.has_column) w[d.node] = v[d.node];
   }
+  /// Lets nodes that pressed on rigid bodies in the last `resolve` go on with these, in velocities by which places
+  /// move.
+  void follow_rigid_bodies(Vec<dim> *w) const;
   /// Takes from velocities what goes into a base.
   void leave_base(Vec<dim> *v) { bases_.leave_base(prescribed_, v); }
   /// Subtracts from nodal forces the forces of dashpots and friction at velocities `v`, and the parts that supports and
@@ -64,18 +76,21 @@ class Conditions {
     for (Dashpot &d : active_dashpots_)
       if (sources_[d.source].kind.incoming_wave) d.beyond = velocity;
   }
-  /// Applies dashpots, contact with friction and prescribed velocities, implicitly over a step gamma, and sums up the
-  /// reactions.
-  void resolve(double t, double gamma, const FilledGrid<dim> &grid, Vec<dim> *v, const Pores &pores = {});
+  /// Applies dashpots, contact with friction, prescribed velocities and rigid bodies, implicitly over a step gamma, and
+  /// sums up the reactions. Collective.
+  PetscErrorCode resolve(double t, double gamma, const FilledGrid<dim> &grid, Vec<dim> *v, const Pores &pores = {});
 
-  /// Adds the work of the boundaries in an accepted step with nodal displacements `u`, and what bases remember of it.
+  /// Adds the work of the boundaries in an accepted step with nodal displacements `u`, and what bases remember of it;
+  /// rigid bodies move.
   void add_work(const Vec<dim> *u);
-  /// Work of each source on the soil, on this rank [J].
+  /// Work of each source, and behind them of each rigid body, on the soil, on this rank [J].
   const std::vector<double> &work() const { return work_; }
 
   SurfaceLoads<dim> &surface_loads() { return surface_loads_; }
   RigidBases<dim> &bases() { return bases_; }
   const RigidBases<dim> &bases() const { return bases_; }
+  RigidBodies<dim> *rigid_bodies() { return rigid_.get(); }  ///< null: the scene has none
+  const RigidBodies<dim> *rigid_bodies() const { return rigid_.get(); }
   /// Saves or loads the state that `begin` cannot find again: the state of contacts, frozen reactions, impulses and
   /// work. Loading calls `begin`. Collective.
   PetscErrorCode serialize(Archive &archive, FilledGrid<dim> &grid, const std::vector<std::array<double, 2>> &impedance,
@@ -107,6 +122,7 @@ class Conditions {
   std::vector<Source> sources_;
   PrescribedMotion<dim> prescribed_;
   RigidBases<dim> bases_;
+  std::unique_ptr<RigidBodies<dim>> rigid_;
   struct DashpotFace {
     int source, column;  // the column at its other end, -1: none
     std::vector<Facet<dim>> facets;

@@ -12,7 +12,7 @@
 namespace talus {
 namespace {
 
-constexpr double never = std::numeric_limits<double>::infinity();
+constexpr double never = FrictionMemory::never;
 constexpr double stuck = 1e-7;  // of the velocity that the contacts of a node meet
 
 }  // namespace
@@ -28,7 +28,7 @@ template <int dim>
 void RigidBases<dim>::add_contact(int node, int source, const Vec<dim> &normal, double area) {
   int &index = first_contact_of_node_[node];
   if (index < 0) index = static_cast<int>(contacts_.size()), contacts_.emplace_back();
-  contacts_[index].push_back({node, source, normal, area, 0, 0, never, false, 0, 0, 0, 0, -1, false});
+  contacts_[index].push_back({node, source, normal, area, {}, false, 0, 0, 0, 0, -1, false});
 }
 
 template <int dim>
@@ -57,7 +57,7 @@ PetscErrorCode RigidBases<dim>::begin(FilledGrid<dim> &grid, const std::vector<d
   for (auto &of_node : contacts_)
     for (Contact &c : of_node)
       if (grid.find_node(c.node) < 0) {
-        c.capacity = 0, c.gathered = c.since_pressed = never;  // soil that arrives here later has not pressed yet
+        c.memory = {0, never, never};  // soil that arrives here later has not pressed yet
         c.slip = c.beside = c.covered * c.slip + (1 - c.covered) * c.beside;
         c.covered = c.passed = 0;
       }
@@ -151,7 +151,7 @@ PetscErrorCode RigidBases<dim>::set_normal_forces(const BackgroundMesh<dim> &mes
   PetscCall(gather_from(mesh.comm(), mesh.halo.neighbours(), forces));
   std::map<Vec<dim>, std::vector<Contact> *> at;
   for (auto &of_node : contacts_) {
-    for (Contact &c : of_node) c.capacity = 0, c.gathered = c.since_pressed = never, c.rests = false;
+    for (Contact &c : of_node) c.memory = {0, never, never}, c.rests = false;
     at[mesh.position[of_node.front().node]] = &of_node;
   }
   for (const NormalForce &f : forces) {
@@ -163,9 +163,10 @@ PetscErrorCode RigidBases<dim>::set_normal_forces(const BackgroundMesh<dim> &mes
         nearest = &c;
     if (!nearest) continue;
     const Vec<dim> &x = f.position;
-    nearest->capacity += f.force * friction_delay_ *
-                         kinds_[f.source].friction_coefficient(x[0], x[1], dim == 3 ? x[dim - 1] : 0, t, nearest->slip);
-    nearest->since_pressed = 0, nearest->rests = true;
+    nearest->memory.capacity +=
+        f.force * friction_delay_ *
+        kinds_[f.source].friction_coefficient(x[0], x[1], dim == 3 ? x[dim - 1] : 0, t, nearest->slip);
+    nearest->memory.since_pressed = 0, nearest->rests = true;
   }
   PetscFunctionReturn(0);
 }
@@ -263,19 +264,17 @@ Vec<dim> RigidBases<dim>::respond(Active &c, double t, double gamma, const Vec<d
   const double z = dim == 3 ? x[dim - 1] : 0, slipped = contact.slip,
                slope = base.friction_coefficient(x[0], x[1], z, t, slipped);
   c.pressed = c.presses ? map<dim>(n).dot(mass * map<dim>(n)) * into : 0;
-  c.capacity = contact.capacity;
+  c.capacity = contact.memory.capacity;
   if (c.presses) c.capacity += slope * c.pressed;
   if (pores.thrust) c.capacity -= slope * gamma * pores.thrust(c.node, n);
-  const bool gathers = contact.gathered < friction_delay_;
-  const double adapted = friction_delay_ > 0 ? 1 - std::exp(-gamma / friction_delay_) : 1;
-  const double forgotten = (gathers ? gamma / (contact.gathered + gamma) : adapted) * c.capacity;
+  const double forgotten = contact.memory.share(gamma, friction_delay_) * c.capacity;
   const double speed = std::sqrt(dot<dim>(slip, slip));
   const double m = speed > 0 ? map<dim>(slip).dot(mass * map<dim>(slip)) / (speed * speed) : 0;
-  const bool adheres = c.presses || contact.since_pressed + gamma <= friction_delay_;
+  const bool adheres = contact.memory.adheres(c.presses, gamma, friction_delay_);
   const double adhering = adheres ? base.adhesion(x[0], x[1], z, t, slipped) * c.area * gamma : 0;
   const double rubbing = left_by_pressure(c, std::max(0., forgotten), adhering, slope, gamma, speed);
   const double most = rubbing + adhering;
-  if (!gathers) c.capacity -= forgotten;
+  if (!contact.memory.gathers(friction_delay_)) c.capacity -= forgotten;
   c.force = most / gamma, c.sticks = m * speed <= most;
   const double share = c.sticks ? 1 : most / (m * speed);
   c.rubs = share * m * speed;
@@ -291,9 +290,7 @@ template <int dim>
 void RigidBases<dim>::commit(Active &c, double gamma) {
   Contact &contact = *c.contact;
   contact.rests = false;
-  contact.since_pressed = c.presses ? 0 : contact.since_pressed + gamma;
-  contact.gathered += gamma;
-  contact.capacity = c.capacity;
+  contact.memory.pass(gamma, c.presses, c.capacity);
 }
 
 template <int dim>
@@ -344,7 +341,7 @@ void RigidBases<dim>::add_slip(const Vec<dim> *u) {
 template <int dim>
 void RigidBases<dim>::add_slip(Active &c, const Vec<dim> &u) {
   Contact &contact = *c.contact;
-  if (contact.since_pressed > friction_delay_) return;
+  if (contact.memory.since_pressed > friction_delay_) return;
   Vec<dim> along = u;
   add_scaled<dim>(along, -dot<dim>(along, contact.normal), contact.normal);
   const double way = std::sqrt(dot<dim>(along, along));
@@ -398,7 +395,7 @@ PetscErrorCode RigidBases<dim>::take_reports(MPI_Comm comm, std::vector<Report> 
   std::fill(rubbed_.begin(), rubbed_.end(), std::array<double, 2>{});
   for (const Active &c : active_) {
     const Contact &contact = *c.contact;
-    if (!c.counted || contact.since_pressed > friction_delay_) continue;
+    if (!c.counted || contact.memory.since_pressed > friction_delay_) continue;
     double *of = &sum[contact.source * sums];
     of[area] += c.area, of[slip] += c.area * contact.slip;
     if (!contact.warm) continue;
@@ -433,7 +430,8 @@ void RigidBases<dim>::serialize(Archive &archive, const FilledGrid<dim> &grid) {
 template <int dim>
 void RigidBases<dim>::serialize_contacts(Archive &archive, const BackgroundMesh<dim> &mesh) {
   struct Stored {
-    double capacity, gathered, since_pressed, slip, beside, covered, passed;
+    FrictionMemory memory;
+    double slip, beside, covered, passed;
     int place, state;
   };
   struct StoredNow {
@@ -447,19 +445,18 @@ void RigidBases<dim>::serialize_contacts(Archive &archive, const BackgroundMesh<
   for (auto &of_node : contacts_)
     for (Contact &c : of_node) {
       if (archive.reading())
-        c.capacity = c.slip = c.beside = c.covered = c.passed = 0, c.gathered = c.since_pressed = never,
-        c.rests = c.warm = false;
-      else if (c.capacity != 0 || c.gathered != never || c.since_pressed != never || c.rests || c.slip != 0 ||
-               c.beside != 0 || c.covered != 0 || c.warm)
+        c.slip = c.beside = c.covered = c.passed = 0, c.memory = {0, never, never}, c.rests = c.warm = false;
+      else if (c.memory.capacity != 0 || c.memory.gathered != never || c.memory.since_pressed != never || c.rests ||
+               c.slip != 0 || c.beside != 0 || c.covered != 0 || c.warm)
         nodes.push_back(mesh.global_node[c.node]),
-            stored.push_back({c.capacity, c.gathered, c.since_pressed, c.slip, c.beside, c.covered, c.passed,
-                              static_cast<int>(&c - of_node.data()), (c.rests ? rests : 0) | (c.warm ? warm : 0)});
+            stored.push_back({c.memory, c.slip, c.beside, c.covered, c.passed, static_cast<int>(&c - of_node.data()),
+                              (c.rests ? rests : 0) | (c.warm ? warm : 0)});
     }
   archive.column(archive.rows("nodes of contacts", Belongs::to_points, nodes), "contacts", stored);
   for (size_t k = 0; archive.reading() && k < nodes.size(); ++k) {
     const Stored &s = stored[k];
     Contact &c = contacts_.at(first_contact_of_node_[node_of(nodes[k])]).at(s.place);
-    c.capacity = s.capacity, c.gathered = s.gathered, c.since_pressed = s.since_pressed;
+    c.memory = s.memory;
     c.slip = s.slip, c.beside = s.beside, c.covered = s.covered, c.passed = s.passed;
     c.rests = s.state & rests, c.warm = s.state & warm;
   }

@@ -1,6 +1,7 @@
 #pragma once
 /// Contact of the skeleton with rigid bases that rub, docs/theory (6.1), (6.2), (6.8) to (6.11): one contact per patch
 /// of a base at a node.
+#include <algorithm>
 #include <functional>
 #include <memory>
 #include <vector>
@@ -8,6 +9,7 @@
 #include "base/archive.h"
 #include "meshes/background_mesh.h"
 #include "physics/boundary/boundary.h"
+#include "physics/boundary/friction_memory.h"
 #include "physics/boundary/prescribed_motion.h"
 #include "physics/boundary/take_turns.h"
 #include "transfer/filled_grid.h"
@@ -33,16 +35,14 @@ class RigidBases {
     int node, source;  // mesh node
     Vec<dim> normal;
     double area;
-    double capacity;       // friction impulse that normal impulses of the recent past still allow [N s]
-    double gathered;       // time since which `capacity` gathers, where soil was at the start; elsewhere infinite [s]
-    double since_pressed;  // time since the node last pressed on the base [s]
-    bool rests;            // in equilibrium as finite elements have found it, until the next `resolve`
-    double slip;           // along the base since the start, where soil covers the place [m]
-    double beside;         // slip of the rest of the place [m]
-    double covered;        // share of the place that soil has covered since it came
-    double passed;         // way of the soil since it came [m]
-    int zone;              // place of its shear zone in zone_state_; -1: none
-    bool warm;             // the shear zone has been heated
+    FrictionMemory memory;
+    bool rests;      // in equilibrium as finite elements have found it, until the next `resolve`
+    double slip;     // along the base since the start, where soil covers the place [m]
+    double beside;   // slip of the rest of the place [m]
+    double covered;  // share of the place that soil has covered since it came
+    double passed;   // way of the soil since it came [m]
+    int zone;        // place of its shear zone in zone_state_; -1: none
+    bool warm;       // the shear zone has been heated
   };
   struct Active {
     int node;  // compact
@@ -80,6 +80,7 @@ class RigidBases {
   PetscErrorCode find_depth(const BackgroundMesh<dim> &mesh, const std::vector<char> &filled, double *depth) const;
   /// Time over which friction adapts to the normal force, docs/theory (6.2) [s].
   void set_friction_delay(double delay) { friction_delay_ = delay; }
+  double friction_delay() const { return friction_delay_; }
   /// Do slip and heat count from now on? Otherwise bases keep the strength that they have.
   void remember_slip(bool remember) { remembers_ = remember; }
   /// All bases are fresh and cold again.
@@ -101,6 +102,13 @@ class RigidBases {
   void add_slip(const Vec<dim> *u);
 
   const std::vector<Active> &active() const { return active_; }
+  /// Calls use(contact) for each active contact of a compact node.
+  template <class Use>
+  void each_at(int node, Use &&use) const {
+    auto c =
+        std::lower_bound(active_.begin(), active_.end(), node, [](const Active &a, int of) { return a.node < of; });
+    for (; c != active_.end() && c->node == node; ++c) use(*c);
+  }
   /// Facets of this rank, with the source that they belong to.
   const std::vector<std::pair<int, std::vector<Facet<dim>>>> &facets() const { return facets_; }
 

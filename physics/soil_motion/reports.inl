@@ -116,6 +116,7 @@ PetscErrorCode SoilMotion<dim, Phases>::find_moving(double t, const Vec<dim> *v,
     for (int i = 0; i < nodes; ++i) add_scaled<dim>(moving[i], own, velocities_.start[i]);
   }
   conditions_.constrain(loading.time_at(t), grid_, moving.data(), true);
+  conditions_.follow_rigid_bodies(moving.data());
   PetscFunctionReturn(0);
 }
 

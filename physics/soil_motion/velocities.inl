@@ -27,7 +27,7 @@ PetscErrorCode SoilMotion<dim, Phases>::apply_boundaries_and_drag(double t, doub
                                velocity + grid_.node_count());
   }
   conditions_.move_ground(loading.ground_velocity_at(t));
-  conditions_.resolve(loading.time_at(t), gamma, grid_, velocity, contact(t, gamma));
+  PetscCall(conditions_.resolve(loading.time_at(t), gamma, grid_, velocity, contact(t, gamma)));
   if constexpr (Phases::liquid)
     fluid_.apply_drag_to_fluids(gamma, pore_frame(t, accepted_), pore_conditions_, velocity,
                                 velocity + grid_.node_count());
@@ -54,7 +54,7 @@ PetscErrorCode SoilMotion<dim, Phases>::apply_boundaries(double t, double gamma,
   PetscFunctionBeginUser;
   Vec<dim> *velocity = reinterpret_cast<Vec<dim> *>(v);
   conditions_.move_ground(loading.ground_velocity_at(t));
-  conditions_.resolve(loading.time_at(t), gamma, grid_, velocity, contact(t, gamma));
+  PetscCall(conditions_.resolve(loading.time_at(t), gamma, grid_, velocity, contact(t, gamma)));
   if constexpr (Phases::liquid)
     fluid_.constrain(pore_frame(t, accepted_), pore_conditions_, velocity, velocity + grid_.node_count());
   PetscFunctionReturn(0);
@@ -130,6 +130,7 @@ PetscErrorCode SoilMotion<dim, Phases>::map_back(double t, double gamma, double 
     conditions_.keep_dashpots(velocity, mapped);
   }
   constrain(t, mapped);
+  conditions_.follow_rigid_bodies(mapped);
   PetscFunctionReturn(0);
 }
 

@@ -23,6 +23,7 @@ struct Gas;
 struct MeshSource;
 struct Output;
 struct QuasiStaticSource;
+struct RigidSource;
 struct Stage;
 struct StartFrom;
 struct Transfer;
@@ -49,6 +50,7 @@ struct Scene {
   Boxed<MeshSource> mesh;
   std::vector<BodySource> body;
   std::vector<BoundarySource> boundary;
+  std::vector<RigidSource> rigid;
   Boxed<Water> water;
   Boxed<Gas> gas;
   std::vector<Stage> stage;

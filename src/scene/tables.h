@@ -9,6 +9,7 @@
 #include "scene/one_of.h"
 #include "scene/output_source.h"
 #include "scene/quasi_static_source.h"
+#include "scene/rigid_source.h"
 #include "scene/scene.h"
 #include "scene/stage.h"
 #include "scene/start_from.h"
@@ -37,6 +38,7 @@ void Scene::fields(Visitor &&v) {
   v.table("mesh", *mesh, "background mesh");
   v.named("body", body, "soils, [body.NAME]");
   v.named("boundary", boundary, "conditions on named groups of facets, [boundary.NAME]");
+  v.named("rigid", rigid, "rigid bodies and walls that soil meets, [rigid.NAME]");
   v.table("water", *water, "pore water");
   v.table("gas", *gas, "pore gas");
   v.list("stage", stage, "stages in their order, [[stage]]");

@@ -8,6 +8,7 @@
 #include "scene/body_source.h"
 #include "scene/boundary_source.h"
 #include "scene/reader.h"
+#include "scene/rigid_source.h"
 #include "scene/scene.h"
 #include "scene/water_source.h"
 
@@ -27,6 +28,14 @@ std::vector<ChangingLoad> changing_loads(const Scene &scene) {
     for (const Function &component : body.body_acceleration)
       for (const TimeSpan &span : component.changes()) when.push_back(span);
     add("body." + body.name + ".body_acceleration", when);
+  }
+  for (const RigidSource &body : scene.rigid) {
+    std::vector<TimeSpan> when;
+    for (const auto *functions : {&body.velocity, &body.force})
+      for (const Function &component : *functions)
+        for (const TimeSpan &span : component.changes()) when.push_back(span);
+    for (const TimeSpan &span : body.rotation.changes()) when.push_back(span);
+    add("rigid." + body.name, when);
   }
   return loads;
 }

@@ -10,9 +10,11 @@
 #include <tuple>
 
 #include "output/together.h"
+#include "physics/boundary/rigid_shape.h"
 #include "scene/body_source.h"
 #include "scene/output_source.h"
 #include "scene/reader.h"
+#include "scene/rigid_source.h"
 #include "scene/scene.h"
 #include "scene/stage.h"
 #include "scene/water_source.h"
@@ -170,6 +172,7 @@ class Model {
     all["water"]["tables"] = water_tables();
     all["water"]["line"] = line_of_no_pressure();
     all["water"]["surface"] = water_surface();
+    all["rigid"] = rigid_bodies();
     all["stages"] = list(scene_.stage, [&](Stage stage) { return stage_of(stage); });
     all["points"] = list(scene_.output->point, point);
     all["lines"] = list(scene_.output->line, line);
@@ -188,6 +191,14 @@ class Model {
     for (std::size_t b = 0; b < scene_.body.size(); ++b)
       all.push_back({{"name", scene_.body[b].name}, {"there", bool(there_[b])}});
     return all;
+  }
+
+  Json rigid_bodies() const {
+    return list(scene_.rigid, [](const RigidSource &source) {
+      const auto centre =
+          source.centre.empty() ? RigidShape<2>(source.polygon).centre() : Vec<2>{source.centre[0], source.centre[1]};
+      return Json{{"name", source.name}, {"polygon", source.polygon}, {"centre", centre}};
+    });
   }
 
   std::string cells() const {

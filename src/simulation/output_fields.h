@@ -15,6 +15,7 @@
 #include "output/output_field.h"
 #include "particles/escaped_particles.h"
 #include "physics/any_soil_motion.h"
+#include "physics/boundary/rigid_bodies.h"
 #include "physics/laws/present_strength.h"
 #include "physics/laws/strength_by_place.h"
 #include "simulation/energy_sums.h"
@@ -209,6 +210,14 @@ struct BoundaryRow {
   typename RigidBases<dim>::Report base{};
 };
 
+/// A rigid body in history.csv, in its freedoms: components, then rotations.
+template <int dim>
+struct RigidRow {
+  std::string name;
+  typename RigidBodies<dim>::Report report{};
+  double elapsed = 0;  ///< since the row before [s]
+};
+
 /// Motion of the ground: of the base or, where a wave comes in, of the outcrop that [[earthquake]] states [m/s2],
 /// [m/s], [m].
 struct GroundRow {
@@ -230,6 +239,7 @@ struct RunRow {
   std::vector<double> first_fluid;  ///< their masses at the start, those that had left by then among them [kg]
   std::vector<double> handed;       ///< FluidBooks::handed; empty where no stage hands states over [kg]
   std::vector<BoundaryRow<dim>> boundaries;
+  std::vector<RigidRow<dim>> rigid;
 
   /// Calls column(HistoryColumn, value) for each column, in the order of the file.
   template <class Visitor>
@@ -292,6 +302,22 @@ struct RunRow {
       of(b, "excess_pressure", "Pa", b.base.pressure);
       joules(b.name + "_heat", b.base.heat);
     }
+    for (const RigidRow<dim> &b : rigid) {
+      const auto moves = [&](const string &quantity, const string &unit, double value) {
+        column(column_of("rigid", b.name, quantity, unit), value);
+      };
+      const auto &[place, velocity, impulse] = b.report;
+      for (int d = 0; d < dim; ++d) moves(string(1, "xyz"[d]), "m", place[d]);
+      moves("rotation", "deg", place[dim] / degree.si);
+      for (int d = 0; d < dim; ++d) moves(string("velocity_") + "xyz"[d], "m/s", velocity[d]);
+      moves("spin", "deg/s", velocity[dim] / degree.si);
+      const double per_time = b.elapsed > 0 ? 1 / b.elapsed : 0;
+      for (int d = 0; d < dim; ++d) moves(string("force_") + "xyz"[d], "N", impulse[d] * per_time);
+      moves("moment", "N m", impulse[dim] * per_time);
+    }
+    for (std::size_t k = 0; k < rigid.size(); ++k)
+      joules("work_" + rigid[k].name,
+             boundaries.size() + k < energy.of_boundary.size() ? energy.of_boundary[boundaries.size() + k] : 0);
     for (std::size_t s = 0; s < boundaries.size(); ++s)
       if (!boundaries[s].of_water)
         joules("work_" + boundaries[s].name, s < energy.of_boundary.size() ? energy.of_boundary[s] : 0);

@@ -12,6 +12,7 @@
 #include "output/together.h"
 #include "scene/output_source.h"
 #include "scene/reader.h"
+#include "scene/rigid_source.h"
 #include "scene/scene.h"
 #include "scene/stage.h"
 #include "scene/water_source.h"
@@ -244,6 +245,7 @@ RunRow<dim> Recorder<dim>::run_row() const {
                               0,
                               {}});
   }
+  for (const RigidSource &source : scene_.rigid) row.rigid.push_back({source.name});
   return row;
 }
 
@@ -280,6 +282,12 @@ void Recorder<dim>::write_history() {
   for (size_t s = 0; s < impulses.size(); ++s)
     for (int d = 0; d < dim; ++d)
       run.boundaries[s].value[d] = run.boundaries[s].loads ? faces[s][d] : elapsed > 0 ? impulses[s][d] / elapsed : 0;
+  if (RigidBodies<dim> *bodies = of_.world.conditions.rigid_bodies()) {
+    std::vector<typename RigidBodies<dim>::Report> reports;
+    require(bodies->take_reports(reports));
+    for (size_t b = 0; b < reports.size(); ++b)
+      run.rigid[b].report = reports[b], run.rigid[b].elapsed = of_.clock.time - impulse_time_;
+  }
   impulse_time_ = of_.clock.time;
   run.visit([&](const HistoryColumn &, double value) { row.push_back(value); });
   row.insert(row.begin(), {of_.clock.time, static_cast<double>(of_.clock.steps)});

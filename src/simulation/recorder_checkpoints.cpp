@@ -15,6 +15,7 @@ namespace {
 /// Why a key of the scene must be what it was: what the saved state has from it.
 std::string tie_of(const std::string &table) {
   if (table == "mesh") return "particles, stresses and contacts in the checkpoint belong to the cells of the mesh";
+  if (table == "rigid") return "the checkpoint holds places, velocities and contacts of rigid bodies";
   if (table == "grids") return "functions of place take their values from it";
   if (table == "boundary") return "the checkpoint holds reactions, contacts and work of the boundaries as they were";
   return "the saved state has come about with it";

@@ -54,6 +54,10 @@ std::string tie_of(const Words &words, PhaseModel phases) {
   if (table == "boundary")
     return last.empty() || last == "kind" || last == "group" ? "its boundaries have contacts and reactions from there"
                                                              : "";
+  if (table == "rigid")
+    return last.empty() || last == "polygon" || last == "centre"
+               ? "its rigid bodies have their shapes, places and contacts from there"
+               : "";
   if (table == "grids") return "functions of place took their values from it";
   if (table == "transfer") return free_transfer.count(key) ? "" : "its stress points are those of that run";
   if (table == "quasi_static") return key == "elements" ? "its Gauss points are those of that run" : "";

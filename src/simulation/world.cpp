@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "base/sum.h"
+#include "physics/boundary/rigid_bodies.h"
 #include "scene/body_source.h"
 #include "scene/mesh_source.h"
 #include "scene/rayleigh.h"
@@ -79,6 +80,7 @@ void World<dim>::set_loading(const Stage &stage, double stage_time, const Clock 
   motion->loading.in_frame_of_base =
       std::ranges::none_of(conditions.sources(), [](const Source &source) { return source.kind.incoming_wave; });
   motion->loading.softening = stage.softening;
+  if (RigidBodies<dim> *rigid = conditions.rigid_bodies()) rigid->set_gravity(motion->loading.gravity_at(clock.time));
   conditions.bases().remember_slip(stage.softening);
   motion->loading.pore_flow = stage.pore_flow;
 }

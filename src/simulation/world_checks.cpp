@@ -10,6 +10,7 @@
 #include "scene/output_source.h"
 #include "scene/quasi_static_source.h"
 #include "scene/reader.h"
+#include "scene/rigid_source.h"
 #include "scene/scene.h"
 #include "scene/stage.h"
 #include "scene/water_source.h"
@@ -149,7 +150,8 @@ void World<dim>::check_something_acts(const std::vector<Source> &sources) const 
     return source.kind.in_motion == OnSoil::load || source.kind.template on_soil<dim>().speed ||
            source.kind.fluid_face();
   });
-  if (moved || pushed || scene.gravity_size() > 0 || scene.water->given || scene.gas->given) return;
+  if (moved || pushed || scene.gravity_size() > 0 || !scene.rigid.empty() || scene.water->given || scene.gas->given)
+    return;
   for (size_t k = 0; k < scene.stage.size(); ++k)
     if (scene.stage[k].stop().waits_for_loads)
       scene.complain("stage." + std::to_string(k) + ".until",

@@ -6,16 +6,19 @@
 #include "base/freed_memory.h"
 #include "base/sum.h"
 #include "meshes/side_columns.h"
+#include "physics/boundary/rigid_bodies.h"
 #include "scene/body_source.h"
 #include "scene/boundary_source.h"
 #include "scene/mesh_source.h"
 #include "scene/place_grid.h"
 #include "scene/reader.h"
+#include "scene/rigid_source.h"
 #include "scene/scene.h"
 #include "scene/stage.h"
 #include "scene/transfer_source.h"
 #include "scene/water_source.h"
 #include "simulation/gap_walls.h"
+#include "simulation/rigid_checks.h"
 #include "simulation/shaken_supports.h"
 #include "simulation/world.h"
 #include "solvers/quasi_static/pore_flow.h"
@@ -37,14 +40,17 @@ World<dim>::World(MPI_Comm world, const Scene &of, DM plex, const std::string &m
   find_strengths();
   check_boundaries(sources);
   check_earthquake();
+  check_rigid_bodies(scene);
   check_shaken_supports(*this, sources);
   tie_sides(sources, true);
   require(conditions.setup(mesh, std::move(sources)));
+  take_rigid_bodies();
   check_gap_walls(*this);
   conditions.use_stand_ins(scene.stage.front().hold_loads);
   pressure.set_regions(bodies_of_cells(mesh, scene));
   set_pore_pressure_ratios();
   seed_bodies();
+  check_rigid_overlap(*this);
   close_bases();                                 // from now on: soil has to be drawn inside
   set_loading(scene.stage.front(), 0, Clock{});  // under which the first state is gathered
   if (const std::string fault = function_fault(); !fault.empty()) throw SceneError(fault);
@@ -161,6 +167,11 @@ void World<dim>::tie_sides(const std::vector<Source> &sources, bool complains) {
   const Ties ties = find_ties<dim>(mesh, sources);
   if (complains && !ties.fault.empty()) scene.complain("boundary." + sources[ties.source].name + ".group", ties.fault);
   mesh.tie(ties.groups);
+}
+
+template <int dim>
+void World<dim>::take_rigid_bodies() {
+  if (!scene.rigid.empty()) conditions.take_rigid_bodies(std::make_unique<RigidBodies<dim>>(mesh, bodies, scene.rigid));
 }
 
 /// Grids of the scene are told of it.
@@ -393,6 +404,8 @@ template int World<2>::id_stride() const;
 template int World<3>::id_stride() const;
 template void World<2>::settle_bodies();
 template void World<3>::settle_bodies();
+template void World<2>::take_rigid_bodies();
+template void World<3>::take_rigid_bodies();
 template void World<2>::tie_sides(const std::vector<Source> &, bool);
 template void World<3>::tie_sides(const std::vector<Source> &, bool);
 template void World<2>::close_bases();

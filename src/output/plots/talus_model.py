@@ -151,6 +151,10 @@ def section(model):
                 label(axes, boundary, points, normals, symbols.size)
         if boundary.level is not None and len(facets):
             outer_level(symbols, boundary)
+    for body in model.data.get("rigid", []):
+        corners = np.array(body["polygon"])
+        axes.fill(*corners.T, facecolor=style.FAINT, edgecolor=style.INK, linewidth=1.2, zorder=4)
+        movable(axes.text(*body["centre"], body["name"], ha="center", va="center", zorder=8, fontsize=9, path_effects=[WHITE]), [body["centre"]])
     water(axes, model, symbols, low, high)
     named_points(axes, model, np.asarray)
     dimensions(axes, model, low, high, metres)

@@ -237,7 +237,7 @@ def of_file(read):
 
 
 class Quantity(typing.NamedTuple):
-    """What a column of history.csv is: a quantity of a "point", of a "boundary" or of the "run"; `which` names the point, the boundary or the part, such as
+    """What a column of history.csv is: a quantity of a "point", a "boundary", a "rigid" body or the "run"; `which` names it or the part, such as
     `kinetic` of the energy."""
 
     quantity: str
@@ -324,11 +324,11 @@ class History:
         return other
 
     def groups(self):
-        """{(quantity, unit): {label: values}}; energies are one group, and so is each measure of the named points. A quantity of a boundary is one alone."""
+        """{(quantity, unit): {label: values}}; energies are one group, and so is each measure of the named points. A quantity of a boundary or a rigid body is one alone."""
         groups = {}
         for name, values in self.columns.items():
             quantity, unit, of, which = self.quantities[name]
-            key, label = ((f"{which}_{quantity}", unit), "") if of == "boundary" else ((quantity, unit), which)
+            key, label = ((f"{which}_{quantity}", unit), "") if of in ("boundary", "rigid") else ((quantity, unit), which)
             groups.setdefault(key, {})[label] = values
         return groups
 
@@ -550,6 +550,22 @@ class Results:
     def model(self):
         """What was modelled, as run/model.json has it: soils, mesh, boundaries, water, points, stages. Raises FileNotFoundError."""
         return json.loads((self.folder / "run" / "model.json").read_text())
+
+    @functools.cached_property
+    def _rigid(self):
+        """The rigid bodies of the model as they were at the start; none where nothing says what was modelled, or where they went."""
+        known = (self.folder / "run" / "model.json").exists() and self.history and len(self.history.time)
+        return self.model().get("rigid", []) if known else []
+
+    def rigid_outlines(self, time):
+        """The rigid bodies at a time [s]: {name: corners [n, 2]}."""
+        history = self.history
+        found = {}
+        for body in self._rigid:
+            x, y, turned = (np.interp(time, history.time, history[f"{body['name']}_{quantity}"]) for quantity in ("x_m", "y_m", "rotation_deg"))
+            cos, sin = np.cos(np.radians(turned)), np.sin(np.radians(turned))
+            found[body["name"]] = (np.array(body["polygon"]) - body["centre"]) @ np.array([[cos, sin], [-sin, cos]]) + [x, y]
+        return found
 
     def mesh(self):
         """Nodes [n, dim] and cells [m, dim + 1] of the background mesh; nodes that ranks shared are one again."""

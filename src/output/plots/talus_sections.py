@@ -250,6 +250,8 @@ class Painter:
             if np.isfinite(line).any():
                 axes.plot(*line.T, color=style.INK, linestyle=DOTTED, linewidth=1.1, path_effects=[HALO])
                 self.drawn_outline = True
+        for corners in self.results.rigid_outlines(snapshot.time).values() if self.flat else []:
+            axes.fill(*corners.T, facecolor=style.FAINT, edgecolor=style.INK, linewidth=1.0, zorder=3)
         if alone and self.flat:
             for name, line, dash in self.slips:
                 axes.plot(*line.T, color="white", lw=3.2)
