@@ -15,6 +15,7 @@ namespace {
 
 constexpr double anywhere = std::numeric_limits<double>::infinity(), prescribed_mass = anywhere;
 constexpr double stiff = 1e-6;        // mobility of a node that cannot give way, over that of its mass
+constexpr double entry = 0.2;         // depth to which soil may enter a body, in units of the cell size
 constexpr double search_again = 0.1;  // way of a body, in units of the smallest edge of the mesh
 
 /// Half the mean distance of particles: how far the soil of one reaches.
@@ -62,6 +63,11 @@ RigidBodies<dim>::RigidBodies(const BackgroundMesh<dim> &mesh, const Soil &soil,
   MPI_Allreduce(MPI_IN_PLACE, &smallest_edge_, 1, MPI_DOUBLE, MPI_MIN, mesh.comm());
 }
 
+template <int dim>
+ConstMap<dim> RigidBodies<dim>::centre(const Moving &body) const {
+  return ConstMap<dim>(body.place.data());
+}
+
 /// The rotation vector grows with the rotation about a fixed axis; bodies that turn freely are those of plane strain.
 template <int dim>
 Square<dim> RigidBodies<dim>::orientation(const Freedoms &place) const {
@@ -82,7 +88,7 @@ Vec<dim> RigidBodies<dim>::carried(const Moving &body, const Vec<dim> &x) const 
 /// Velocity of a point of the body at `x` by each freedom.
 template <int dim>
 auto RigidBodies<dim>::arm(const Moving &body, const Vec<dim> &x) const -> Arm {
-  const ColumnVector<dim> r = map<dim>(x) - ConstMap<dim>(body.place.data());
+  const ColumnVector<dim> r = map<dim>(x) - centre(body);
   Arm arm;
   if constexpr (dim == 2)
     arm << 1, 0, -r[1], 0, 1, r[0];
@@ -96,7 +102,7 @@ template <int dim>
 double RigidBodies<dim>::distance(const Moving &body, const Vec<dim> &x, Vec<dim> &outward) const {
   const Square<dim> turned = orientation(body.place);
   Vec<dim> local;
-  map<dim>(local) = turned.transpose() * (map<dim>(x) - ConstMap<dim>(body.place.data()));
+  map<dim>(local) = turned.transpose() * (map<dim>(x) - centre(body));
   const double distance = body.shape.distance(local, outward);
   map<dim>(outward) = (turned * map<dim>(outward)).eval();
   return distance;
@@ -135,7 +141,8 @@ PetscErrorCode RigidBodies<dim>::search(const FilledGrid<dim> &grid) {
   PetscFunctionReturn(0);
 }
 
-/// The nodes of the cell of a particle near a body; those from which the soil is a cell away cannot meet it soon.
+/// The nodes of the cell of a particle near a body. One behind the particle, as the body sees it, meets the body once
+/// soil has entered: at once it would make the layer between both rigid.
 template <int dim>
 void RigidBodies<dim>::add_candidates(const FilledGrid<dim> &grid, const Body<dim> &soil, int i) {
   const ParticleArrays<dim> &p = soil.particles();
@@ -144,16 +151,17 @@ void RigidBodies<dim>::add_candidates(const FilledGrid<dim> &grid, const Body<di
   for (int b = 0; b < static_cast<int>(bodies_.size()); ++b) {
     const Moving &body = bodies_[b];
     const double most = body.shape.reach() + 3 * edge;
-    if (map<dim>(difference<dim>(p.position[i], *reinterpret_cast<const Vec<dim> *>(body.place.data()))).squaredNorm() >
-        most * most)
-      continue;
+    if ((map<dim>(p.position[i]) - centre(body)).squaredNorm() > most * most) continue;
     const auto n = barycentric(cell, p.position[i]);
-    Vec<dim> now{}, outward;
+    Vec<dim> now{}, outward, ignored;
     for (int k = 0; k <= dim; ++k) add_scaled<dim>(now, n[k], grid.position[grid.find_node(cell.node[k])]);
     const double away = distance(body, now, outward), gap = away - reach;
     const double area = gap < reach ? p.volume[i] / (2 * reach) : 0;
-    for (int k = 0; k <= dim && gap <= edge; ++k)
-      candidates_.push_back({mesh_.global_node[cell.node[k]], b, cell.node[k], gap, n[k] * area, outward});
+    for (int k = 0; k <= dim && gap <= edge; ++k) {
+      const bool behind = distance(body, grid.position[grid.find_node(cell.node[k])], ignored) > away;
+      candidates_.push_back(
+          {mesh_.global_node[cell.node[k]], b, cell.node[k], gap + (behind ? entry * edge : 0), n[k] * area, outward});
+    }
   }
 }
 

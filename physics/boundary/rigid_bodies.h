@@ -113,6 +113,7 @@ class RigidBodies {
   };
   using Arm = Eigen::Matrix<double, dim, freedoms>;
 
+  ConstMap<dim> centre(const Moving &body) const;
   Square<dim> orientation(const Freedoms &place) const;
   Vec<dim> carried(const Moving &body, const Vec<dim> &x) const;
   Arm arm(const Moving &body, const Vec<dim> &x) const;
