@@ -390,12 +390,14 @@ PetscErrorCode RigidBodies<dim>::apply(int b, const Step &step, const Freedoms &
   map<freedoms>(impulse_[b]) += map<freedoms>(received);
   if (sources_[b].is_free())
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, received.data(), freedoms, MPI_DOUBLE, MPI_SUM, mesh_.comm()));
+  const Freedoms before = body.velocity;
   body.velocity = predicted(b, step.t, step.gamma);
   for (int f = 0; f < freedoms; ++f)
     if (!std::isinf(body.mass[f])) body.velocity[f] += received[f] / body.mass[f];
   for (size_t k = first_contact(b); k < first_contact(b + 1); ++k) {
     Contact &c = contacts_[k];
-    c.with = velocity_at(body, body.velocity, step.grid.position[contacts_[k].at]);
+    c.with = velocity_at(body, body.velocity, step.grid.position[c.at]);
+    c.gained = difference<dim>(c.with, velocity_at(body, before, step.grid.position[c.at]));
     c.follows = dot<dim>(c.with, c.normal) + meetings_[k].closing;
   }
   PetscFunctionReturn(0);
@@ -453,9 +455,13 @@ void RigidBodies<dim>::project(const Vec<dim> *v, Vec<dim> *force) const {
 
 template <int dim>
 void RigidBodies<dim>::advance(const Vec<dim> *u, double *work) {
-  for (size_t k = 0; k < contacts_.size(); ++k)
-    if (meetings_[k].counted)
-      work[contacts_[k].body] -= dot<dim>(contacts_[k].impulse, u[contacts_[k].at]) / resolved_step_;
+  for (size_t k = 0; k < contacts_.size(); ++k) {
+    const Contact &c = contacts_[k];
+    if (!meetings_[k].counted) continue;
+    Vec<dim> mean{};  // velocity in the step, of which the displacement has that at its end
+    add_scaled<dim>(mean, 1 / resolved_step_, u[c.at]), add_scaled<dim>(mean, -0.5, c.gained);
+    work[c.body] -= dot<dim>(c.impulse, mean);
+  }
   for (Moving &body : bodies_) map<freedoms>(body.place) += resolved_step_ * map<freedoms>(body.velocity);
 }
 

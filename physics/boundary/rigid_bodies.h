@@ -87,6 +87,7 @@ class RigidBodies {
     double force;      // friction against sliding [N]
     double follows;    // least normal velocity with which the node enters the body [m/s]
     Vec<dim> with;     // velocity of the body at the node [m/s]
+    Vec<dim> gained;   // of that in the step [m/s]
     Vec<dim> impulse;  // on the body [N s]
   };
   /// A contact within a step.

@@ -47,16 +47,17 @@ std::string problem_of_polygon(const std::vector<std::vector<double>> &corners) 
     if (corner.size() != 2) return "must have 2 coordinates in each corner, [x, y]";
   const std::vector<Vec<2>> corner = points(corners);
   const auto at = [&](std::size_t i) { return corner[i % count]; };
-  for (std::size_t i = 0; i < count; ++i) {
+  for (std::size_t i = 0; i < count; ++i)
     if (at(i) == at(i + 1))
       return "must not have corner " + std::to_string(i) + " twice: the last corner is joined to the first one";
+  for (std::size_t i = 0; i < count; ++i) {
     const Vec<2> before = from_to(at(i), at(i + 1)), after = from_to(at(i + 1), at(i + 2));
     if (cross(before, after) == 0 && dot<2>(before, after) < 0)
       return "must not turn back on itself at corner " + std::to_string((i + 1) % count);
     for (std::size_t k = i + 2; k < count - (i == 0); ++k)
       if (meet(at(i), at(i + 1), at(k), at(k + 1)))
-        return "must not cross or touch itself, as its sides from corners " + std::to_string(i) + " and " + std::to_string(k) +
-               " do: give the corners in their order";
+        return "must not cross or touch itself, as its sides from corners " + std::to_string(i) + " and " +
+               std::to_string(k) + " do: give the corners in their order";
   }
   return "";
 }

@@ -38,6 +38,7 @@
 #include "tests/verification/mohr_coulomb_triaxial/exact.h"
 #include "tests/verification/phase_reduction/exact.h"
 #include "tests/verification/pore_boundaries/exact.h"
+#include "tests/verification/rigid_bodies/exact.h"
 #include "tests/verification/rigid_rotation/exact.h"
 #include "tests/verification/rigid_translation/exact.h"
 #include "tests/verification/shaken_block/exact.h"
@@ -104,6 +105,8 @@ inline constexpr LadderEntry ladder[] = {
      rungs::cam_clay_paths},
     {"rigid_rotation", "verification", "stress of a body that rotates ten times", rungs::rigid_rotation},
     {"spinning_block", "verification", "momentum of a block that spins freely", rungs::spinning_block},
+    {"rigid_bodies", "verification",
+     "rigid bodies on soil: fall, rest, sliding, toppling, earth pressure, bearing capacity", rungs::rigid_bodies},
     {"footing", "verification", "bearing capacity of Tresca soil, where cells could lock", rungs::footing},
     {"fem_elastic_slope", "verification", "settlement of an elastic slope, on finer meshes and in a slice",
      rungs::fem_elastic_slope},

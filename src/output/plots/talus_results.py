@@ -324,11 +324,15 @@ class History:
         return other
 
     def groups(self):
-        """{(quantity, unit): {label: values}}; energies are one group, and so is each measure of the named points. A quantity of a boundary or a rigid body is one alone."""
+        """{(quantity, unit): {label: values}}; energies are one group, and so is each measure of the named points. A quantity of a boundary is one alone,
+        one of a rigid body has its components."""
         groups = {}
         for name, values in self.columns.items():
             quantity, unit, of, which = self.quantities[name]
-            key, label = ((f"{which}_{quantity}", unit), "") if of in ("boundary", "rigid") else ((quantity, unit), which)
+            if of == "rigid" and quantity[-2:-1] == "_":
+                key, label = (f"{which}_{quantity[:-2]}", unit), quantity[-1]
+            else:
+                key, label = ((f"{which}_{quantity}", unit), "") if of in ("boundary", "rigid") else ((quantity, unit), which)
             groups.setdefault(key, {})[label] = values
         return groups
 

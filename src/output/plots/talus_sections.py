@@ -34,6 +34,7 @@ MOVED = 0.8  # of the spacing of particles: an outline that is nearer to the pre
 LINE, LETTER = 0.17, 0.078  # height of a line of a title, and width of a letter of it [inch]
 TALLEST = 0.8  # height of a map over the width of its column
 ISLAND = 0.35  # half the width of one or two cells that are not shown as soil without a value amid others, over their size
+BODIES = 0.15  # most of the size of the soil, by which rigid bodies beside it make a picture larger
 AROUND = 0.06  # of the size of the soil: what is shown of the mesh's bottom beside it
 ROOM = 0.28  # which the name of a point needs above it [inch]
 RELIEF = 2.0  # least difference of heights that has contours, over the spacing of particles: the surface is rough by about one, the least interval
@@ -92,8 +93,18 @@ class Painter:
             along, base = self._line_of_bottom(view)
             if (shown := np.isfinite(base)).any():
                 low, high = np.array([along[shown].min(), low[1]]), np.array([along[shown].max(), max(high[1], base[shown].max())])
+        if len(self.views) == 1:
+            low, high = self._with_bodies(low, high)
         margin = 0.012 * (high - low) + (GAP if self.ground is None else GAP_IN_SPACE) * self._sizes(self.results.snapshots[0]).max()
         return low - margin, high + margin
+
+    def _with_bodies(self, low, high):
+        """The same corners with room for rigid bodies, which may be much larger than the soil."""
+        bodies = [corners for snapshot in self.results.snapshots for corners in self.results.rigid_outlines(snapshot.time).values()]
+        if not bodies:
+            return low, high
+        corners, most = np.concatenate(bodies), BODIES * (high - low)
+        return np.clip(corners.min(axis=0), low - most, low), np.clip(corners.max(axis=0), high, high + most)
 
     def _outline(self, view, corners):
         """Polylines around the soil at the start."""
