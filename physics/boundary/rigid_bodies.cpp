@@ -165,23 +165,19 @@ void RigidBodies<dim>::add_candidates(const FilledGrid<dim> &grid, const Body<di
   }
 }
 
-/// Leaves one candidate of a body at a node: the nearest, with the area of all.
+/// Leaves one candidate of a body at a node: the nearest, with the area of all. Their order does not depend on that of
+/// the particles.
 template <int dim>
 void RigidBodies<dim>::merge_candidates() {
-  const auto key = [](const Candidate &c) { return std::tie(c.body, c.global); };
-  std::stable_sort(candidates_.begin(), candidates_.end(),
-                   [&](const Candidate &a, const Candidate &b) { return key(a) < key(b); });
+  const auto key = [](const Candidate &c) { return std::tie(c.body, c.global, c.gap, c.outward, c.area); };
+  std::sort(candidates_.begin(), candidates_.end(),
+            [&](const Candidate &a, const Candidate &b) { return key(a) < key(b); });
   size_t count = 0;
-  for (const Candidate &c : candidates_) {
-    if (count == 0 || key(candidates_[count - 1]) != key(c)) {
+  for (const Candidate &c : candidates_)
+    if (count > 0 && candidates_[count - 1].body == c.body && candidates_[count - 1].global == c.global)
+      candidates_[count - 1].area += c.area;
+    else
       candidates_[count++] = c;
-      continue;
-    }
-    Candidate &all = candidates_[count - 1];
-    const double area = all.area + c.area;
-    if (std::tie(c.gap, c.outward) < std::tie(all.gap, all.outward)) all = c;
-    all.area = area;
-  }
   candidates_.resize(count);
 }
 

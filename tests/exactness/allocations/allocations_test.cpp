@@ -107,6 +107,22 @@ TEST(Allocations, none_on_a_base_that_heats_itself) {
   EXPECT_EQ(during.in_remaps, 0);
 }
 
+TEST(Allocations, none_beside_rigid_bodies) {
+  std::vector<std::string> bodies{"mesh.size=0.01",
+                                  "rigid.wall.friction_angle=20",
+                                  "rigid.block.friction_angle=20",
+                                  "rigid.wall.polygon=[[0.25, -0.01], [0.27, -0.01], [0.27, 0.1], [0.25, 0.1]]",
+                                  "rigid.block.polygon=[[0.05, 0.1], [0.1, 0.1], [0.1, 0.12], [0.05, 0.12]]",
+                                  "rigid.block.density=1000"};
+  const Count between = count(column, bodies, 1000, 100);
+  EXPECT_GT(between.steps, 50);
+  EXPECT_EQ(between.in_steps, 0);
+  bodies.emplace_back("transfer.remap_interval=0");
+  const Count during = count(column, bodies, 4000, 100);
+  EXPECT_EQ(during.remaps, 100);
+  EXPECT_EQ(during.in_remaps, 0);
+}
+
 TEST(Allocations, none_in_steps_and_remaps_under_error_control) {
   const Count c = count(column, {"mesh.size=0.01", "integrator.kind=arkode"}, 1500, 200);
   EXPECT_GT(c.steps, 50);
