@@ -41,26 +41,29 @@ template <int dim>
 RigidBodies<dim>::RigidBodies(const BackgroundMesh<dim> &mesh, const Soil &soil,
                               const std::vector<RigidSource> &sources)
     : mesh_(mesh), soil_(soil), sources_(sources), impulse_(sources.size(), Freedoms{}) {
-  for (const RigidSource &source : sources) {
-    Moving body{RigidShape<dim>(source.polygon), {}, {}, {}, {}};
-    Vec<dim> centre = body.shape.centre();
-    if (!source.centre.empty()) std::copy_n(source.centre.begin(), dim, centre.begin());
-    const double mass = source.density > 0 ? source.density * body.shape.volume() : source.mass;
-    const double off = map<dim>(difference<dim>(centre, body.shape.centre())).squaredNorm();
-    const double uniform = mass * (body.shape.square_radius() + off);
-    body.mass.fill(prescribed_mass);
-    if (source.is_free()) std::fill_n(body.mass.begin(), dim, mass);
-    if (source.is_free() && !source.rotation.given()) body.mass[dim] = source.inertia > 0 ? source.inertia : uniform;
-    std::copy_n(centre.begin(), dim, body.place.begin());
-    std::copy(source.initial_velocity.begin(), source.initial_velocity.end(), body.velocity.begin());
-    for (double &x : centre) x = -x;
-    body.shape.move(centre);
-    bodies_.push_back(body);
-  }
+  for (const RigidSource &source : sources) bodies_.push_back(moving_of(source));
   for (const int node : mesh.halo.shared_nodes()) shared_.emplace(mesh.global_node[node], node);
   smallest_edge_ = anywhere;
   for (const double edge : mesh.mean_edge) smallest_edge_ = std::min(smallest_edge_, edge);
   MPI_Allreduce(MPI_IN_PLACE, &smallest_edge_, 1, MPI_DOUBLE, MPI_MIN, mesh.comm());
+}
+
+template <int dim>
+auto RigidBodies<dim>::moving_of(const RigidSource &source) -> Moving {
+  Moving body{RigidShape<dim>(source.polygon), {}, {}, {}, {}};
+  Vec<dim> centre = body.shape.centre();
+  if (!source.centre.empty()) std::copy_n(source.centre.begin(), dim, centre.begin());
+  const double mass = source.density > 0 ? source.density * body.shape.volume() : source.mass;
+  const double off = map<dim>(difference<dim>(centre, body.shape.centre())).squaredNorm();
+  const double uniform = mass * (body.shape.square_radius() + off);
+  body.mass.fill(prescribed_mass);
+  if (source.is_free()) std::fill_n(body.mass.begin(), dim, mass);
+  if (source.is_free() && !source.rotation.given()) body.mass[dim] = source.inertia > 0 ? source.inertia : uniform;
+  std::copy_n(centre.begin(), dim, body.place.begin());
+  std::copy(source.initial_velocity.begin(), source.initial_velocity.end(), body.velocity.begin());
+  for (double &x : centre) x = -x;
+  body.shape.move(centre);
+  return body;
 }
 
 template <int dim>
@@ -327,25 +330,34 @@ auto RigidBodies<dim>::respond(size_t contact, const Step &step, const Freedoms 
   return r;
 }
 
+/// Sums over the nodes of all ranks for a free body that moves with `motion`: the stiffness that they put against a
+/// change of it, and behind it their impulse, in its freedoms. Collective.
+template <int dim>
+PetscErrorCode RigidBodies<dim>::sum_responses(int b, const Step &step, const Freedoms &motion, System *sums) const {
+  PetscFunctionBeginUser;
+  sums->setZero();
+  for (size_t k = first_contact(b); k < first_contact(b + 1); ++k) {
+    if (!meetings_[k].counted) continue;
+    const Response r = respond(k, step, motion);
+    const Arm lever = arm(bodies_[b], step.grid.position[contacts_[k].at]);
+    sums->template leftCols<freedoms>() += lever.transpose() * r.stiffness * lever;
+    sums->col(freedoms) += lever.transpose() * map<dim>(r.impulse);
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums->data(), freedoms * (freedoms + 1), MPI_DOUBLE, MPI_SUM, mesh_.comm()));
+  PetscFunctionReturn(0);
+}
+
 /// Motion of a free body at the end of a step with the impulses that belong to it, by Newton's method in its freedoms:
 /// given the motion, nodes do not know one another. `motion` begins as what is predicted without soil. Collective.
 template <int dim>
 PetscErrorCode RigidBodies<dim>::solve(int b, const Step &step, Freedoms *motion) const {
-  constexpr int most = 60, slower = 20, sums = freedoms * (freedoms + 1);
+  constexpr int most = 60, slower = 20;  // iterations, and from when on by half of their change
   constexpr double negligible = 1e-14;
-  using System = Eigen::Matrix<double, freedoms, freedoms + 1>;
   const Freedoms start = *motion, &mass = bodies_[b].mass;
   PetscFunctionBeginUser;
   for (int iteration = 0; iteration < most; ++iteration) {
-    System system = System::Zero();  // stiffness, and the impulse
-    for (size_t k = first_contact(b); k < first_contact(b + 1); ++k) {
-      if (!meetings_[k].counted) continue;
-      const Response r = respond(k, step, *motion);
-      const Arm lever = arm(bodies_[b], step.grid.position[contacts_[k].at]);
-      system.template leftCols<freedoms>() += lever.transpose() * r.stiffness * lever;
-      system.col(freedoms) += lever.transpose() * map<dim>(r.impulse);
-    }
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, system.data(), sums, MPI_DOUBLE, MPI_SUM, mesh_.comm()));
+    System system;
+    PetscCall(sum_responses(b, step, *motion, &system));
     for (int f = 0; f < freedoms; ++f) {
       if (std::isinf(mass[f])) system.row(f).setZero();
       const double inertia = std::isinf(mass[f]) ? 1 : mass[f];
@@ -365,6 +377,22 @@ PetscErrorCode RigidBodies<dim>::solve(int b, const Step &step, Freedoms *motion
   PetscFunctionReturn(0);
 }
 
+/// Gives the node of a contact its impulse from a body that moves with `motion`, which it returns in the freedoms of
+/// the body.
+template <int dim>
+auto RigidBodies<dim>::exchange(size_t contact, const Step &step, const Freedoms &motion, Vec<dim> *v) -> Freedoms {
+  Contact &c = contacts_[contact];
+  const Meeting &m = meetings_[contact];
+  const Response r = respond(contact, step, motion);
+  c.impulse = r.impulse, c.presses = r.presses, c.sticks = r.sticks, c.force = r.most / step.gamma;
+  const bool gathers = c.memory.gathers(step.bases.friction_delay());
+  c.memory.pass(step.gamma, r.presses, gathers ? r.capacity : (1 - m.share) * r.capacity);
+  map<dim>(v[c.at]) -= m.mobility * map<dim>(r.impulse);
+  Freedoms received;
+  map<freedoms>(received) = arm(bodies_[c.body], step.grid.position[c.at]).transpose() * map<dim>(r.impulse);
+  return received;
+}
+
 /// Gives the nodes their impulses from a body that moves with `motion`, and the body theirs. Collective for a body that
 /// moves freely.
 template <int dim>
@@ -373,15 +401,8 @@ PetscErrorCode RigidBodies<dim>::apply(int b, const Step &step, const Freedoms &
   Moving &body = bodies_[b];
   Freedoms received{};
   for (size_t k = first_contact(b); k < first_contact(b + 1); ++k) {
-    Contact &c = contacts_[k];
-    const Meeting &m = meetings_[k];
-    const Vec<dim> &x = step.grid.position[c.at];
-    const Response r = respond(k, step, motion);
-    c.impulse = r.impulse, c.presses = r.presses, c.sticks = r.sticks, c.force = r.most / step.gamma;
-    const bool gathers = c.memory.gathers(step.bases.friction_delay());
-    c.memory.pass(step.gamma, r.presses, gathers ? r.capacity : (1 - m.share) * r.capacity);
-    map<dim>(v[c.at]) -= m.mobility * map<dim>(r.impulse);
-    if (m.counted) map<freedoms>(received) += arm(body, x).transpose() * map<dim>(r.impulse);
+    const Freedoms one = exchange(k, step, motion, v);
+    if (meetings_[k].counted) map<freedoms>(received) += map<freedoms>(one);
   }
   map<freedoms>(impulse_[b]) += map<freedoms>(received);
   if (sources_[b].is_free())

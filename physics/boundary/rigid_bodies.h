@@ -1,5 +1,5 @@
 #pragma once
-/// Rigid bodies that soil meets, docs/theory (6.12) to (6.16): contact at the nodes near their surfaces, by impulses
+/// Rigid bodies that soil meets, docs/theory (6.12) to (6.14): contact at the nodes near their surfaces, by impulses
 /// without a stiffness. In plane strain. Bodies do not meet one another, nor the ends of the mesh.
 #include <array>
 #include <memory>
@@ -113,7 +113,9 @@ class RigidBodies {
     Vec<dim> outward;
   };
   using Arm = Eigen::Matrix<double, dim, freedoms>;
+  using System = Eigen::Matrix<double, freedoms, freedoms + 1>;
 
+  static Moving moving_of(const RigidSource &source);
   ConstMap<dim> centre(const Moving &body) const;
   Square<dim> orientation(const Freedoms &place) const;
   Vec<dim> carried(const Moving &body, const Vec<dim> &x) const;
@@ -129,7 +131,9 @@ class RigidBodies {
   Meeting meeting(const Contact &c, const Step &step, const Vec<dim> *v) const;
   Vec<dim> velocity_at(const Moving &body, const Freedoms &motion, const Vec<dim> &x) const;
   Response respond(size_t contact, const Step &step, const Freedoms &motion) const;
+  PetscErrorCode sum_responses(int body, const Step &step, const Freedoms &motion, System *sums) const;
   PetscErrorCode solve(int body, const Step &step, Freedoms *motion) const;
+  Freedoms exchange(size_t contact, const Step &step, const Freedoms &motion, Vec<dim> *v);
   PetscErrorCode apply(int body, const Step &step, const Freedoms &motion, Vec<dim> *v);
   size_t first_contact(int body) const;
 

@@ -24,9 +24,10 @@ inline std::string history_column(const std::string &quantity, std::string unit)
   return quantity + "_" + unit;
 }
 
-/// A column of history.csv as history_columns.csv describes it: a quantity of a point, a boundary or the run.
+/// A column of history.csv as history_columns.csv describes it: a quantity of a point, a boundary, a rigid body or the
+/// run.
 struct HistoryColumn {
-  std::string name, quantity, unit, of, which;  ///< of: "point", "boundary", "rigid", "run"; which of them, or of their parts
+  std::string name, quantity, unit, of, which;  ///< of: "point" and so on; which of them, or of their parts
 };
 inline HistoryColumn column_of(const std::string &of, const std::string &which, const std::string &quantity,
                                const std::string &unit) {
