@@ -1070,7 +1070,7 @@ class SlipSurface(unittest.TestCase):
                                                                               "factor_of_safety": {"decided": True, "value": 1.2345}}))
                 soil = Moved()
                 results = types.SimpleNamespace(snapshots=[soil], up_axis=lambda: 1, mesh=lambda: (np.zeros((0, 2)), np.zeros((0, 3), int)), scene={}, folder=folder, bodies=["clay"],
-                                                escaped=None, history=None, title="slope", when=lambda one: f"t = {one.time} s")
+                                                escaped=None, history=None, title="slope", when=lambda one: f"t = {one.time} s", rigid_outlines=lambda time: {})
                 sheets = []
                 with unittest.mock.patch.object(talus_sections.style, "save", lambda figure, path: sheets.append(figure)):
                     talus_sections.draw_sections(results, ["displacement"], None, folder)
@@ -1412,6 +1412,19 @@ class Mechanisms(unittest.TestCase):
         # below the axis a second line of words was cut off in a low section
         self.assertEqual(figure.axes[0].get_xlabel(), "x [m]")
         self.assertIn("whose size is free", figure.axes[0].get_title(loc="left"))
+
+
+class RigidBodies(unittest.TestCase):
+    def test_stand_where_the_history_says(self):
+        # a quarter turn about the centre, while it moves to x = 5
+        history = {"wall_x_m": np.array([1.0, 5.0]), "wall_y_m": np.array([2.0, 2.0]), "wall_rotation_deg": np.array([0.0, 180.0])}
+        body = {"name": "wall", "polygon": [[0, 1], [2, 1], [2, 3], [0, 3]], "centre": [1, 2]}
+
+        class Rows(dict):
+            time = np.array([0.0, 2.0])
+
+        results = types.SimpleNamespace(_rigid=[body], history=Rows(history))
+        np.testing.assert_allclose(Results.rigid_outlines(results, 1.0)["wall"], [[4, 1], [4, 3], [2, 3], [2, 1]], atol=1e-12)
 
 
 if __name__ == "__main__":
