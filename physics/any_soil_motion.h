@@ -15,6 +15,7 @@
 #include "physics/laws/present_strength.h"
 #include "physics/motion.h"
 #include "physics/pores/pore_report.h"
+#include "physics/pores/pressure_solves.h"
 #include "physics/prescribed_pressure.h"
 #include "physics/soil_motion/step_measures.h"
 #include "physics/soil_motion/work_ledger.h"
@@ -125,6 +126,8 @@ class AnySoilMotion : public Motion {
   virtual PoreReport pores(const Body<dim> &body, int particle) const = 0;
   /// Masses of each fluid that moves, of all ranks; collective.
   virtual PetscErrorCode fluid_ledger(FluidLedger *sums) = 0;
+  /// What solves for implicit pore pressure have done; of none: no steps.
+  virtual PressureSolves pressure_solves() const = 0;
   /// Of explicit drag, on this rank [1/s].
   virtual double drag_rate() const = 0;
   /// Pressure of the liquid that [water] asks for at a place, where it moves [Pa].
@@ -149,6 +152,7 @@ struct MotionParts {
   double relaxation_time;                   ///< [s]
   double total_mass;                        ///< of the particles of all ranks [kg]
   long long particles;                      ///< of all ranks
+  bool implicit_pressure = false;           ///< of the pores, in time
 };
 
 /// The motion for the scene's phase model (src/variants).

@@ -84,6 +84,10 @@ class SoilMotion final : public AnySoilMotion<dim> {
     if constexpr (Phases::liquid) return fluid_.ledger(gathered_, sums);
     return 0;
   }
+  PressureSolves pressure_solves() const override {
+    if constexpr (Phases::liquid) return implicit_.done;
+    return {};
+  }
   double drag_rate() const override {
     if constexpr (Phases::liquid) return fluid_.drag_rate(grid_);
     return 0;
@@ -153,7 +157,8 @@ class SoilMotion final : public AnySoilMotion<dim> {
   typename Conditions<dim>::Pores contact(double t, double gamma);
   void constrain(double t, Vec<dim> *v);
   PetscErrorCode map_change(double gamma, const Vec<dim> *velocity, Vec<dim> *mapped) requires Phases::liquid;
-  PetscErrorCode find_strain_of_step(double t, double gamma, const Vec<dim> *velocity) requires Phases::liquid;
+  PetscErrorCode find_strain_of_step(double t, const StepStart<dim> &at,
+                                     const Vec<dim> *velocity) requires Phases::liquid;
   PetscErrorCode add_implicit_pressure(double t, double gamma, Vec<dim> *velocity) requires Phases::liquid;
   PetscErrorCode to_particles_and_back(const Vec<dim> *in, Vec<dim> *out);
   typename PoreFluid<dim, Phases>::Frame pore_frame(double t, const State &state) requires Phases::liquid;

@@ -15,7 +15,8 @@ namespace talus {
 template <int dim, class Phases>
 std::vector<PoreStiffness> SoilMotion<dim, Phases>::pores_of_bodies(const MotionParts<dim> &parts) {
   std::vector<PoreStiffness> pores;
-  for (const auto &body : parts.bodies) pores.push_back(pore_stiffness(parts.scene, body->source(), fluids));
+  for (const auto &body : parts.bodies)
+    pores.push_back(pore_stiffness(parts.scene, body->source(), fluids, parts.implicit_pressure));
   return pores;
 }
 
@@ -45,9 +46,8 @@ SoilMotion<dim, Phases>::SoilMotion(const MotionParts<dim> &parts)
                             [](const auto &body) { return !own_acceleration(body->source()).empty(); })),
       fastest_mode_(parts.mesh, smallest_mass_, pores_of_bodies(parts)),
       rayleigh_(parts.mesh, parts.bodies),
-      fluid_(parts.mesh, parts.bodies, parts.scene),
-      implicit_(parts.scene.water->pressure == PoreIntegration::at_end, parts.mesh.node_count(),
-                parts.mesh.cell_count()) {
+      fluid_(parts.mesh, parts.bodies, parts.scene, parts.implicit_pressure),
+      implicit_(parts.implicit_pressure, parts.mesh) {
   const int nodes = parts.mesh.node_count();
   make_room(force_, nodes), make_room(scratch_, static_cast<size_t>(nodes) * fields);
   make_room(nodal_, static_cast<size_t>(nodes) * nodal_sums);

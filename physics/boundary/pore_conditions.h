@@ -40,6 +40,12 @@ class PoreConditions {
   }
   /// Is there open water on the free surface, so that `begin` needs its moments?
   bool open_water() const { return rain_ != atmosphere && (*sources_)[rain_].kind.open_water; }
+  /// Does a boundary let water pass one way only?
+  bool limits_one_side() const {
+    return sealed_ || std::ranges::any_of(*sources_, [](const Source &source) {
+             return source.kind.water == OnWater::outflow || source.kind.water == OnWater::seepage;
+           });
+  }
   /// Picks nodes and faces of the filled grid; `surface` [node] is the sum of w grad N over all cells [m2], `moment`
   /// [node] that area's first moment in depth below the node [m3], theory (5.2), which only open water asks for.
   /// Collective.

@@ -1,9 +1,10 @@
 #pragma once
 /// Conjugate gradients with a diagonal preconditioner, for a symmetric positive definite operator on the nodes of a
-/// rank: Hestenes & Stiefel (1952).
+/// rank: Hestenes & Stiefel (1952). Arrays of their own, since the nodes are others after each remap and the time loop
+/// allocates nothing.
 #include <petscsys.h>
 
-#include <cmath>
+#include <array>
 #include <vector>
 
 #include "base/room.h"
@@ -12,37 +13,41 @@ namespace talus {
 
 class ConjugateGradients {
  public:
-  explicit ConjugateGradients(int most_nodes) {
-    for (std::vector<double> *field : {&residual_, &direction_, &image_}) make_room(*field, most_nodes);
+  explicit ConjugateGradients(size_t most_nodes) {
+    for (std::vector<double> *field : {&residual_, &preconditioned_, &direction_, &image_})
+      make_room(*field, most_nodes);
   }
 
   /// Solves A x = b on `nodes` nodes, from x = 0. `diagonal` approximates that of A; `apply`(x, y) finds y = A x;
-  /// `product`(a, b) is a scalar product over all ranks; `sizes`(r, z) gives that of the residual r and z, and a
-  /// measure of r, at which the solve ends once it is at most `enough`. It ends too after `most` iterations, and where
-  /// A is not positive definite. `taken`: number of iterations. Collective.
-  template <class Apply, class Product, class Sizes>
-  PetscErrorCode solve(int nodes, const double *diagonal, const double *b, double *x, int most, Apply &&apply,
-                       Product &&product, Sizes &&sizes, double enough) {
+  /// `sum`(terms...) sums functions of a node over all ranks. The solve ends once the sum of `weight` times the square
+  /// of the residual is at most `enough`, after `most` iterations, or where A is not positive definite. Collective.
+  template <class Apply, class Sum>
+  PetscErrorCode solve(int nodes, const double *diagonal, const double *weight, const double *b, double *x, int most,
+                       double enough, Apply &&apply, Sum &&sum) {
     PetscFunctionBeginUser;
-    double *r = residual_.data(), *p = direction_.data(), *q = image_.data();
-    for (int i = 0; i < nodes; ++i) x[i] = 0, r[i] = b[i], p[i] = b[i] / diagonal[i];
-    double weighted = product(r, p);
-    for (int taken = 0; taken < most && weighted > 0; ++taken) {
+    double *r = residual_.data(), *z = preconditioned_.data(), *p = direction_.data(), *q = image_.data();
+    double weighted = 1;
+    std::fill_n(x, nodes, 0.), std::fill_n(p, nodes, 0.), std::copy_n(b, nodes, r);
+    for (iterations_ = 0;; ++iterations_) {
+      for (int i = 0; i < nodes; ++i) z[i] = r[i] / diagonal[i];
+      const auto [next, size] = sum([&](int i) { return r[i] * z[i]; }, [&](int i) { return weight[i] * r[i] * r[i]; });
+      if (size <= enough || iterations_ == most) break;
+      for (int i = 0; i < nodes; ++i) p[i] = z[i] + next / weighted * p[i];
+      weighted = next;
       PetscCall(apply(p, q));
-      const double curvature = product(p, q);
+      const auto [curvature] = sum([&](int i) { return p[i] * q[i]; });
       if (!(curvature > 0)) break;
       const double step = weighted / curvature;
-      for (int i = 0; i < nodes; ++i) x[i] += step * p[i], r[i] -= step * q[i], q[i] = r[i] / diagonal[i];
-      const auto [next, size] = sizes(r, q);
-      if (size <= enough) break;
-      for (int i = 0; i < nodes; ++i) p[i] = q[i] + next / weighted * p[i];
-      weighted = next;
+      for (int i = 0; i < nodes; ++i) x[i] += step * p[i], r[i] -= step * q[i];
     }
     PetscFunctionReturn(0);
   }
+  int iterations() const { return iterations_; }               ///< of the last solve
+  const double *residual() const { return residual_.data(); }  ///< b - A x after it
 
  private:
-  std::vector<double> residual_, direction_, image_;
+  int iterations_ = 0;
+  std::vector<double> residual_, preconditioned_, direction_, image_;
 };
 
 }  // namespace talus

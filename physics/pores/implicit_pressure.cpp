@@ -1,119 +1,367 @@
 #include "physics/pores/implicit_pressure.h"
 
 #include <algorithm>
+#include <cmath>
+
+#include "base/room.h"
+#include "physics/kinematics.h"
+#include "physics/pores/storage.h"
 
 namespace talus {
 
 template <int dim>
-PetscErrorCode ImplicitPressure<dim>::find_push(FilledGrid<dim> &grid, const Shape<dim> *shape, const double *weight,
-                                                const double *pressure) {
+ImplicitPressure<dim>::ImplicitPressure(bool acts, const BackgroundMesh<dim> &mesh)
+    : acts(acts), gradients(acts ? mesh.node_count() : 0) {
+  if (!acts) return;
+  const size_t nodes = mesh.node_count(), cells = mesh.cell_count();
+  matrices.make_room_for(mesh);
+  for (Array *field : {&volume,      &particle_volume, &acting, &change,    &before,        &held,      &strain,
+                       &stiffness,   &solid,           &apart,  &supported, &porosity,      &gap_solid, &gap_apart,
+                       &correction_, &wanted_,         &image_, &diagonal_, &of_mesh_node_, &counts_})
+    make_room(*field, nodes);
+  make_room(sums_, 2 * nodes);
+  for (Array *field : {&modulus, &unbounded}) make_room(*field, cells);
+  for (auto *field : {&after_drag, &mapped}) make_room(*field, 2 * nodes);
+  make_room(push, nodes), make_room(velocity_, nodes), make_room(mapped_, nodes);
+  make_room(numbers_, nodes);
+  walls.reserve(nodes), gap_corners.reserve((dim + 1) * cells);
+}
+
+namespace {
+
+double square(double x) { return x * x; }
+
+template <int dim>
+double along(Quad v, const Vec<dim> &n) {
+  double sum = 0;
+  for (int d = 0; d < dim; ++d) sum += v[d] * n[d];
+  return sum;
+}
+
+template <int dim>
+Quad times(double scale, const Vec<dim> &n) {
+  return quad(scale) * load<dim>(n.data());
+}
+
+/// ln det (I + g).
+template <int dim>
+double volume_strain(const std::array<Vec<dim>, dim> &g) {
+  double x;
+  if constexpr (dim == 2)
+    x = g[0][0] + g[1][1] + (g[0][0] * g[1][1] - g[0][1] * g[1][0]);
+  else {
+    const auto minor = [&](int i, int j) { return g[i][i] * g[j][j] - g[i][j] * g[j][i]; };
+    x = g[0][0] + g[1][1] + g[2][2] + minor(0, 1) + minor(1, 2) + minor(2, 0) + g[0][0] * minor(1, 2) -
+        g[0][1] * (g[1][0] * g[2][2] - g[1][2] * g[2][0]) + g[0][2] * (g[1][0] * g[2][1] - g[1][1] * g[2][0]);
+  }
+  return std::abs(x) < 1e-3 ? log1p_series(x) : std::log1p(x);
+}
+
+}  // namespace
+
+template <int dim>
+void ImplicitPressure<dim>::number_nodes(const FilledGrid<dim> &grid) {
+  numbered_ = grid.node_count();
+  std::copy_n(grid.mesh_node.begin(), numbered_, numbers_.begin());
+}
+
+template <int dim>
+void ImplicitPressure<dim>::begin_part(const FilledGrid<dim> &grid) {
+  matrices.begin(grid);
+  for (int i = 0; i < numbered_; ++i) of_mesh_node_[numbers_[i]] = before[i];
+  for (int i = 0; i < grid.node_count(); ++i) before[i] = of_mesh_node_[grid.mesh_node[i]];
+  for (int i = 0; i < numbered_; ++i) of_mesh_node_[numbers_[i]] = 0;
+  number_nodes(grid);
+}
+
+/// Sums of functions of a node over the nodes of all ranks. Collective.
+template <int dim>
+template <class... Terms>
+std::array<double, sizeof...(Terms)> ImplicitPressure<dim>::sum(const StepStart<dim> &at, Terms &&...term) const {
+  std::array<double, sizeof...(Terms)> all{};
+  for (int i = 0; i < at.grid.node_count(); ++i) {
+    size_t k = 0;
+    ((all[k++] += counts_[i] * term(i)), ...);
+  }
+  MPI_Allreduce(MPI_IN_PLACE, all.data(), all.size(), MPI_DOUBLE, MPI_SUM, at.grid.mesh().comm());
+  return all;
+}
+
+template <int dim>
+PetscErrorCode ImplicitPressure<dim>::begin(const StepStart<dim> &at) {
   PetscFunctionBeginUser;
-  std::fill_n(push.begin(), grid.node_count(), Vec<dim>{});
-  for (int c = 0; c < grid.cell_count(); ++c) {
-    const auto &node = shape[c].node;
-    double mean = 0;
-    for (int i : node) mean += pressure[i];
-    mean *= weight[c] / (dim + 1);
-    Vec<dim> first{};
+  const int nodes = at.grid.node_count();
+  for (int i = 0; i < nodes; ++i) counts_[i] = at.grid.mesh().counted[at.grid.mesh_node[i]];
+  matrices.integrate(at.shape, at.weight, gap_corners);
+  std::fill_n(held.begin(), nodes, 0.), first_ = 0;
+  iterations_ = 0, starts_ = true;
+  PetscCall(find_squeezed(at, acting.data()));
+  PetscFunctionReturn(0);
+}
+
+/// Mean pressure of the cells of a node once its strain `held` has squeezed their pores, and its slope, into
+/// `stiffness`; below cavitation it falls with a little of it. Collective.
+template <int dim>
+PetscErrorCode ImplicitPressure<dim>::find_squeezed(const StepStart<dim> &at, double *pressure) {
+  PetscFunctionBeginUser;
+  constexpr double vapour = 1e3;  // [Pa]: stiffness of pores that cavitate
+  const int nodes = at.grid.node_count();
+  std::fill_n(sums_.begin(), 2 * nodes, 0.);
+  for (int c = 0; c < at.grid.cell_count(); ++c) {
+    const double part = at.weight[c] / (dim + 1), liquid = part * modulus[c], gas = part * vapour,
+                 full = (unbounded[c] - cavitation_pressure) / modulus[c];
+    for (int i : at.shape[c].node) {
+      const double rest = full - held[i], slope = rest > 0 ? liquid : gas;
+      sums_[2 * i] += rest * slope, sums_[2 * i + 1] += slope;
+    }
+  }
+  PetscCall(at.grid.sum(sums_.data(), 2));
+  for (int i = 0; i < nodes; ++i) {
+    pressure[i] = cavitation_pressure + sums_[2 * i] / volume[i];
+    stiffness[i] = sums_[2 * i + 1] / volume[i];
+  }
+  PetscFunctionReturn(0);
+}
+
+template <int dim>
+PetscErrorCode ImplicitPressure<dim>::find_strain(const StepStart<dim> &at, const Vec<dim> *u) {
+  PetscFunctionBeginUser;
+  const int nodes = at.grid.node_count();
+  double *own = sums_.data(), *apart = own + nodes;
+  std::fill_n(own, nodes, 0.);
+  for (int c = 0; c < at.grid.cell_count(); ++c) {
+    const Shape<dim> &shape = at.shape[c];
+    std::array<Vec<dim>, dim> g{};
     for (int k = 0; k < dim; ++k)
-      for (int d = 0; d < dim; ++d) {
-        const double f = mean * shape[c].gradient[k][d];
-        push[node[k + 1]][d] += f, first[d] -= f;
-      }
-    add_scaled<dim>(push[node[0]], 1, first);
+      for (int i = 0; i < dim; ++i)
+        add_scaled<dim>(g[i], u[shape.node[k + 1]][i] - u[shape.node[0]][i], shape.gradient[k]);
+    const double part = at.weight[c] / (dim + 1) * volume_strain<dim>(g);
+    for (int i : shape.node) own[i] += part;
   }
-  PetscCall(grid.sum(push[0].data(), dim));
+  PetscCall(at.grid.sum(own, 1));
+  for (int i = 0; i < nodes; ++i)
+    mapped_[i].apart = quad(at.grid.mass[i]) * (load<dim>(u[nodes + i].data()) - load<dim>(u[i].data()));
+  PetscCall(find_flux_divergence(at, apart));
+  for (int i = 0; i < nodes; ++i) strain[i] = own[i] / volume[i] + apart[i] / particle_volume[i];
   PetscFunctionReturn(0);
 }
 
 template <int dim>
-PetscErrorCode ImplicitPressure<dim>::find_beyond_gaps(FilledGrid<dim> &grid, const Shape<dim> *shape,
-                                                       const double *weight, const double *pressure) {
+void ImplicitPressure<dim>::end() {
+  ++done.steps, done.iterations += iterations_, done.most_iterations = std::max(done.most_iterations, iterations_);
+  done.unsolved += lacking_ > 0, done.worst = std::max(done.worst, lacking_);
+}
+
+/// Momenta, into `mapped_`, of the particles that have the velocities `velocity_` of nodes. Collective.
+template <int dim>
+PetscErrorCode ImplicitPressure<dim>::map_velocities(FilledGrid<dim> &grid) {
   PetscFunctionBeginUser;
-  std::fill_n(beyond_gap.begin(), grid.node_count(), 0.);
-  for (const GapCorner &corner : gap_corners) {
-    double mean = 0;
-    for (int i : shape[corner.cell].node) mean += pressure[i] / (dim + 1);
-    beyond_gap[corner.node] += weight[corner.cell] * corner.share * mean;
-  }
-  PetscCall(grid.sum(beyond_gap.data(), 1));
+  matrices.momentum(velocity_.data(), mapped_.data());
+  PetscCall(grid.sum(reinterpret_cast<double *>(mapped_.data()), 8));
   PetscFunctionReturn(0);
 }
 
 template <int dim>
-PetscErrorCode ImplicitPressure<dim>::apply(FilledGrid<dim> &grid, const PrescribedMotion<dim> &supports,
-                                            const Shape<dim> *shape, const double *weight, double step, const double *x,
-                                            double *y) {
+PetscErrorCode ImplicitPressure<dim>::to_particles_and_back(FilledGrid<dim> &grid, const Vec<dim> *in, Vec<dim> *out) {
   PetscFunctionBeginUser;
   const int nodes = grid.node_count();
-  PetscCall(find_push(grid, shape, weight, x));
-  PetscCall(find_beyond_gaps(grid, shape, weight, x));
-  Vec<dim> *in = after_drag.data(), *out = mapped.data();
-  const auto stop_at_walls = [&](Vec<dim> *liquid) {
-    for (const Wall &wall : walls) wall.along.take_from(liquid[wall.node]);
-  };
-  for (int i = 0; i < nodes; ++i)
-    for (int d = 0; d < dim; ++d) {
-      const double at_gap = beyond_gap[i] * gap[i][d];
-      in[i][d] = solid[i] * push[i][d] + gap_solid[i] * at_gap;
-      in[nodes + i][d] = apart[i] * push[i][d] + gap_apart[i] * at_gap;
+  for (int i = 0; i < nodes; ++i) velocity_[i] = {load<dim>(in[i].data()), load<dim>(in[nodes + i].data())};
+  PetscCall(map_velocities(grid));
+  for (int i = 0; i < nodes; ++i) {
+    const Quad scale = quad(1 / grid.mass[i]);
+    store<dim>(out[i].data(), scale * mapped_[i].solid), store<dim>(out[nodes + i].data(), scale * mapped_[i].apart);
+  }
+  PetscFunctionReturn(0);
+}
+
+template <int dim>
+PetscErrorCode ImplicitPressure<dim>::find_push(FilledGrid<dim> &grid, const double *pressure) {
+  PetscFunctionBeginUser;
+  matrices.push(pressure, push.data());
+  PetscCall(grid.sum(reinterpret_cast<double *>(push.data()), 4));
+  PetscFunctionReturn(0);
+}
+
+template <int dim>
+void ImplicitPressure<dim>::stop_at_walls(std::vector<NodalPair> &velocity) const {
+  for (const Wall &wall : walls)
+    for (int k = 0; k < wall.along.count; ++k) {
+      const Vec<dim> &n = wall.along.direction[k];
+      velocity[wall.node].apart -= times<dim>(along<dim>(velocity[wall.node].apart, n), n);
     }
-  for (const auto &p : supports.active())  // where a support holds the skeleton, drag acts against what does not move
+}
+
+/// Momenta of nodes after S, into `mapped_`, from the impulse of pressures x. Collective.
+template <int dim>
+PetscErrorCode ImplicitPressure<dim>::find_velocities(const StepStart<dim> &at, const double *x) {
+  PetscFunctionBeginUser;
+  const int nodes = at.grid.node_count();
+  PetscCall(find_push(at.grid, x));
+  for (int i = 0; i < nodes; ++i) {
+    velocity_[i] = {quad(solid[i]) * push[i], quad(apart[i]) * push[i]};
+    if (push[i][at_gap] == 0) continue;
+    const Quad area = times<dim>(push[i][at_gap], gap[i]);
+    velocity_[i].solid += quad(gap_solid[i]) * area, velocity_[i].apart += quad(gap_apart[i]) * area;
+    push[i] -= area;
+  }
+  for (const auto &p : at.supports.active())  // where a support holds the skeleton, drag acts against what is at rest
     for (int k = 0; k < p.condition->count; ++k) {
       const Vec<dim> &n = p.condition->direction[k];
-      Vec<dim> &grains = in[p.node], &liquid = in[nodes + p.node];
-      const double on_liquid = dot<dim>(push[p.node], n) - beyond_gap[p.node] * dot<dim>(gap[p.node], n);
-      add_scaled<dim>(grains, -dot<dim>(grains, n), n);
-      add_scaled<dim>(liquid, supported[p.node] * on_liquid - dot<dim>(liquid, n), n);
+      auto &[grains, liquid] = velocity_[p.node];
+      grains -= times<dim>(along<dim>(grains, n), n);
+      liquid += times<dim>(supported[p.node] * along<dim>(push[p.node], n) - along<dim>(liquid, n), n);
     }
-  stop_at_walls(in + nodes);
-  PetscCall((to_particles_and_back<dim, 2>(grid, in, out)));
-  for (const auto &p : supports.active())
+  stop_at_walls(velocity_);
+  PetscCall(map_velocities(at.grid));
+  for (const auto &p : at.supports.active())
     for (int k = 0; k < p.condition->count; ++k) {
-      const double speed = dot<dim>(out[p.node], p.condition->direction[k]);
-      add_scaled<dim>(out[p.node], -speed, p.condition->direction[k]);
-      add_scaled<dim>(out[nodes + p.node], speed, p.condition->direction[k]);
+      const Vec<dim> &n = p.condition->direction[k];
+      const Quad held = times<dim>(along<dim>(mapped_[p.node].solid, n), n);
+      mapped_[p.node].solid -= held, mapped_[p.node].apart += held;
     }
-  stop_at_walls(out + nodes);
-  std::fill_n(y, nodes, 0.);
-  for (const GapCorner &corner : gap_corners) {
-    const double flux = porosity[corner.node] * dot<dim>(out[nodes + corner.node], gap[corner.node]);
-    for (int i : shape[corner.cell].node) y[i] -= weight[corner.cell] * corner.share / (dim + 1) * flux;
+  stop_at_walls(mapped_);
+  PetscFunctionReturn(0);
+}
+
+/// Integral of the divergence of the fluxes by the momenta `mapped_`.apart, of which gaps take their part. Collective.
+template <int dim>
+PetscErrorCode ImplicitPressure<dim>::find_flux_divergence(const StepStart<dim> &at, double *y) {
+  PetscFunctionBeginUser;
+  for (int i = 0; i < at.grid.node_count(); ++i) {
+    push[i] = quad(porosity[i] / at.grid.mass[i]) * mapped_[i].apart;
+    push[i][at_gap] = -along<dim>(push[i], gap[i]);
   }
-  for (int i = 0; i < nodes; ++i) add_scaled<dim>(out[i], porosity[i], out[nodes + i]);
-  for (int c = 0; c < grid.cell_count(); ++c) {
-    const auto &node = shape[c].node;
-    double divergence = 0;
-    for (int k = 0; k < dim; ++k)
-      for (int d = 0; d < dim; ++d) divergence += shape[c].gradient[k][d] * (out[node[k + 1]][d] - out[node[0]][d]);
-    divergence *= weight[c] / (dim + 1);
-    for (int i : node) y[i] += divergence;
+  matrices.divergence(push.data(), y);
+  PetscCall(at.grid.sum(y, 1));
+  PetscFunctionReturn(0);
+}
+
+/// y = A x for pressures x at the nodes [Pa], theory of pores (8.5): the volume that the pores of the nodes lack after
+/// the strain by their forces in a step [m3]. Collective.
+template <int dim>
+PetscErrorCode ImplicitPressure<dim>::apply(const StepStart<dim> &at, const double *x, double *y) {
+  PetscFunctionBeginUser;
+  const int nodes = at.grid.node_count();
+  PetscCall(find_velocities(at, x));
+  for (int i = 0; i < nodes; ++i) {
+    const double scale = 1 / at.grid.mass[i];
+    const Quad flux = quad(scale * porosity[i]) * mapped_[i].apart;
+    push[i] = quad(scale) * mapped_[i].solid + flux;
+    push[i][at_gap] = -along<dim>(flux, gap[i]);
   }
-  PetscCall(grid.sum(y, 1));
-  const double square = step * step;
-  for (int i = 0; i < nodes; ++i) y[i] = volume[i] / stiffness[i] * x[i] + square * y[i];
+  matrices.divergence(push.data(), y);
+  PetscCall(at.grid.sum(y, 1));
+  for (int i = 0; i < nodes; ++i) y[i] = volume[i] / stiffness[i] * x[i] + square(at.step) * y[i];
+  PetscFunctionReturn(0);
+}
+
+/// Adds the strain by pressures x to `strain`: as A has it, but fluxes strain the volume of the particles. Collective.
+template <int dim>
+PetscErrorCode ImplicitPressure<dim>::add_strain_by(const StepStart<dim> &at, const double *x) {
+  PetscFunctionBeginUser;
+  const int nodes = at.grid.node_count();
+  double *own = sums_.data(), *flux = own + nodes;
+  PetscCall(find_velocities(at, x));
+  for (int i = 0; i < nodes; ++i) push[i] = quad(1 / at.grid.mass[i]) * mapped_[i].solid, push[i][at_gap] = 0;
+  matrices.divergence(push.data(), own);
+  PetscCall(at.grid.sum(own, 1));
+  PetscCall(find_flux_divergence(at, flux));
+  for (int i = 0; i < nodes; ++i) strain[i] += square(at.step) * (own[i] / volume[i] + flux[i] / particle_volume[i]);
+  PetscFunctionReturn(0);
+}
+
+/// The diagonal of A without S. Collective.
+template <int dim>
+PetscErrorCode ImplicitPressure<dim>::find_diagonal(const StepStart<dim> &at) {
+  PetscFunctionBeginUser;
+  const int nodes = at.grid.node_count();
+  double *mobility = sums_.data();
+  for (int i = 0; i < nodes; ++i) mobility[i] = square(at.step) * (solid[i] + porosity[i] * apart[i]);
+  matrices.diagonal(mobility, diagonal_.data());
+  PetscCall(at.grid.sum(diagonal_.data(), 1));
+  for (int i = 0; i < nodes; ++i) diagonal_[i] += volume[i] / stiffness[i];
+  PetscFunctionReturn(0);
+}
+
+/// Finds the strain `held` that has the pressure `acting`, and the stiffness there, by Newton's method, which ends soon
+/// where cells begin or cease to cavitate: their pressure is piecewise linear. Collective.
+template <int dim>
+PetscErrorCode ImplicitPressure<dim>::fit_held(const StepStart<dim> &at, double allowed) {
+  PetscFunctionBeginUser;
+  constexpr int most_turns = 6;
+  const int nodes = at.grid.node_count();
+  double *pressure = wanted_.data();
+  for (int turn = 0; turn < most_turns; ++turn) {
+    PetscCall(find_squeezed(at, pressure));
+    const auto [apart] = sum(at, [&](int i) { return volume[i] * square(pressure[i] - acting[i]); });
+    if (apart <= 1e-4 * allowed) break;
+    for (int i = 0; i < nodes; ++i) held[i] += (pressure[i] - acting[i]) / stiffness[i];
+  }
+  PetscFunctionReturn(0);
+}
+
+/// Pressure goes on changing much as before: takes what a share of the last change mends from `lacking`. Collective.
+template <int dim>
+PetscErrorCode ImplicitPressure<dim>::start_as_before(const StepStart<dim> &at, double *lacking, double *share) {
+  PetscFunctionBeginUser;
+  PetscCall(apply(at, before.data(), image_.data()));
+  const auto [along, curvature] = sum(
+      at, [&](int i) { return before[i] * lacking[i]; }, [&](int i) { return before[i] * image_[i]; });
+  *share = curvature > 0 ? along / curvature : 0;  // with which the rest has no part along `before`
+  for (int i = 0; i < at.grid.node_count(); ++i) lacking[i] -= *share * image_[i];
+  PetscFunctionReturn(0);
+}
+
+/// One step of Newton's method: changes `acting` by the solution of A x = volume (held - strain). Collective.
+template <int dim>
+PetscErrorCode ImplicitPressure<dim>::correct(const StepStart<dim> &at, double enough) {
+  PetscFunctionBeginUser;
+  constexpr int most_iterations = 500;
+  const int nodes = at.grid.node_count();
+  double *lacking = wanted_.data(), *size = sums_.data();
+  PetscCall(find_diagonal(at));
+  for (int i = 0; i < nodes; ++i) lacking[i] = volume[i] * (held[i] - strain[i]);
+  for (int i = 0; i < nodes; ++i) size[i] = square(stiffness[i]) / volume[i];
+  double share = 0;
+  if (starts_) PetscCall(start_as_before(at, lacking, &share));
+  PetscCall(gradients.solve(
+      nodes, diagonal_.data(), size, lacking, correction_.data(), most_iterations, enough,
+      [&](const double *x, double *y) { return apply(at, x, y); },
+      [&](auto &&...term) { return sum(at, std::forward<decltype(term)>(term)...); }));
+  for (int i = 0; i < nodes && starts_; ++i) correction_[i] += share * before[i];
+  iterations_ += gradients.iterations() + starts_, starts_ = false;
+  PetscCall(add_strain_by(at, correction_.data()));
+  for (int i = 0; i < nodes; ++i) {
+    change[i] += correction_[i], acting[i] += correction_[i];
+    held[i] -= correction_[i] / stiffness[i];
+  }
   PetscFunctionReturn(0);
 }
 
 template <int dim>
-PetscErrorCode ImplicitPressure<dim>::find_diagonal(FilledGrid<dim> &grid, const Shape<dim> *shape,
-                                                    const double *weight, double step) {
+PetscErrorCode ImplicitPressure<dim>::solve(const StepStart<dim> &at, bool *changed) {
   PetscFunctionBeginUser;
-  const int nodes = grid.node_count();
-  std::fill_n(diagonal.begin(), nodes, 0.);
-  for (int c = 0; c < grid.cell_count(); ++c) {
-    const auto &node = shape[c].node;
-    const double part = step * weight[c] / (dim + 1);
-    Vec<dim> first{};
-    double sum = 0;
-    const auto add = [&](int i, const Vec<dim> &g) { sum += (solid[i] + porosity[i] * apart[i]) * dot<dim>(g, g); };
-    for (int k = 0; k < dim; ++k)
-      add_scaled<dim>(first, -1, shape[c].gradient[k]), add(node[k + 1], shape[c].gradient[k]);
-    add(node[0], first);
-    for (int i : node) diagonal[i] += part * part * sum;
+  constexpr double tolerance = 1e-2;  // of the pressure that acts
+  constexpr double reduction = 0.1;   // of what is lacking at first: water at rest comes to rest
+  constexpr double least = 1e-12;     // of the stiffness of the water
+  constexpr int most_rounds = 12;
+  std::fill_n(change.begin(), at.grid.node_count(), 0.);
+  const double earlier = starts_ ? 0 : 1;  // solves in the step
+  *changed = false;
+  for (int round = 0;; ++round) {
+    const auto [lacks, acts, floor] = sum(
+        at, [&](int i) { return volume[i] * square((held[i] - strain[i]) * stiffness[i]); },
+        [&](int i) { return volume[i] * square(acting[i]); },
+        [&](int i) { return volume[i] * square(least * stiffness[i]); });
+    if (first_ == 0) first_ = lacks;
+    const double allowed = std::max(floor, std::min(square(tolerance) * acts, square(reduction) * first_));
+    lacking_ = lacks <= allowed ? 0 : std::sqrt(lacks / acts);
+    if (lacks <= allowed || round == most_rounds) break;
+    PetscCall(correct(at, std::max(0.1 * allowed, 1e-2 * lacks)));
+    PetscCall(fit_held(at, allowed));
+    *changed = true;
   }
-  PetscCall(grid.sum(diagonal.data(), 1));
-  for (int i = 0; i < nodes; ++i) diagonal[i] += volume[i] / stiffness[i];
+  for (int i = 0; i < at.grid.node_count(); ++i) before[i] = earlier * before[i] + change[i];
   PetscFunctionReturn(0);
 }
 

@@ -32,7 +32,8 @@ class PoreFluid {
   static constexpr int fluids = 1 + Phases::gas;
   using Array = std::vector<double>;
 
-  PoreFluid(const BackgroundMesh<dim> &mesh, std::vector<std::unique_ptr<Body<dim>>> &bodies, const Scene &scene);
+  PoreFluid(const BackgroundMesh<dim> &mesh, std::vector<std::unique_ptr<Body<dim>>> &bodies, const Scene &scene,
+            bool implicit);
 
   /// Fills the pores of all particles as the scene's [water] says for time t.
   void fill(double t);
@@ -118,15 +119,10 @@ class PoreFluid {
   /// of. It may be left out before particles are released. Collective.
   PetscErrorCode update_pressures(const Frame &frame);
 
-  // Pressure implicit in time, theory of pores, section 8; `frame` is the accepted state, as a trial.
-  PetscErrorCode start_implicit(const Frame &frame, ImplicitPressure<dim> &of) const;
-  PetscErrorCode find_squeezed(const Frame &frame, double *pressure, ImplicitPressure<dim> &of) const;
-  PetscErrorCode push_by(const Frame &frame, double step, const double *pressure, ImplicitPressure<dim> &of,
-                         Vec<dim> *velocity) const;
-  void find_mobility(const Frame &frame, const PoreConditions<dim> &conditions, double step,
-                     ImplicitPressure<dim> &of) const;
-  PetscErrorCode find_pore_strain(const Frame &frame, const PoreConditions<dim> &conditions, const Vec<dim> *u,
-                                  ImplicitPressure<dim> &of);
+  // Pressure implicit in time, theory of pores, section 8; `frame` is the accepted state.
+  PetscErrorCode start_implicit(const Frame &frame, const PoreConditions<dim> &conditions, double step,
+                                ImplicitPressure<dim> &of);
+  PetscErrorCode push_by_change(const Frame &frame, double step, ImplicitPressure<dim> &of, Vec<dim> *velocity) const;
 
   /// Suction at the points of a body [Pa].
   const double *suction(int body) const requires Phases::suction { return points_[body].suction.data(); }
@@ -219,6 +215,9 @@ class PoreFluid {
   void set_masses_by_rate(const Frame &frame);
   template <class Hold>
   void limits(const Frame &frame, const PoreConditions<dim> &conditions, Hold &&hold) const;
+  void find_gaps(const Frame &frame, const PoreConditions<dim> &conditions);
+  void find_mobility(const Frame &frame, const PoreConditions<dim> &conditions, double step,
+                     ImplicitPressure<dim> &of) const;
   PetscErrorCode spread_divergence(const Frame &frame, Array &divergence);
   PetscErrorCode share_divergence(const Frame &frame, Array &divergence) requires Phases::suction;
   PetscErrorCode share_pressure(const Frame &frame, Array &pressure) requires Phases::suction;

@@ -11,7 +11,7 @@ namespace talus {
 
 template <int dim, class Phases>
 PoreFluid<dim, Phases>::PoreFluid(const BackgroundMesh<dim> &mesh, std::vector<std::unique_ptr<Body<dim>>> &bodies,
-                                  const Scene &scene)
+                                  const Scene &scene, bool implicit)
     : mesh_(mesh),
       bodies_(bodies),
       scene_(scene),
@@ -23,7 +23,7 @@ PoreFluid<dim, Phases>::PoreFluid(const BackgroundMesh<dim> &mesh, std::vector<s
       patches_(scene.transfer->locking == Locking::patches),
       explicit_drag_(scene.water->drag == PoreDrag::at_start),
       by_rate_(scene.water->storage == PoreStorage::rate),
-      implicit_(scene.water->pressure == PoreIntegration::at_end),
+      implicit_(implicit),
       points_(bodies.size()),
       next_points_(bodies.size()),
       trial_(bodies.size()) {

@@ -17,7 +17,8 @@ struct PoreStiffness {
   std::vector<Fluid> fluids;
 };
 
-/// The pores of a body at the start, with as many moving `fluids` as its phase model has: liquid, then gas.
-PoreStiffness pore_stiffness(const Scene &scene, const BodySource &body, int fluids);
+/// The pores of a body at the start, with as many moving `fluids` as its phase model has: liquid, then gas. `implicit`:
+/// the pressure of the liquid is.
+PoreStiffness pore_stiffness(const Scene &scene, const BodySource &body, int fluids, bool implicit);
 
 }  // namespace talus

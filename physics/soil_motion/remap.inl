@@ -107,6 +107,7 @@ PetscErrorCode SoilMotion<dim, Phases>::start_part(double t) {
   PetscCall(meet_boundaries(load_time));
   std::copy_n(start.begin(), nodes, now.begin());
   if constexpr (Phases::liquid) {
+    if (implicit_.acts) implicit_.begin_part(grid_);
     PetscCall(
         fluid_.gather(pore_frame(t, accepted_), pore_conditions_, filling_.share, start.data(), now.data() + nodes));
     std::copy_n(now.begin() + nodes, nodes * fluids, start.begin() + nodes);

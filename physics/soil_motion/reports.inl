@@ -193,6 +193,10 @@ PetscErrorCode SoilMotion<dim, Phases>::serialize(Archive &archive) {
   if (archive.reading()) conditions_.surface_loads().begin(bodies_, grid_);
   if constexpr (Phases::liquid) {
     fluid_.serialize(archive, grid, points);
+    PressureSolves &done = implicit_.done;
+    archive.serialize("pressure solves", done.steps, done.iterations, done.most_iterations, done.unsolved, done.worst);
+    if (implicit_.acts) archive.column(grid.nodes, "change of pore pressure", implicit_.before);
+    if (archive.reading() && implicit_.acts) implicit_.number_nodes(grid_), implicit_.matrices.begin(grid_);
     if (archive.reading())
       PetscCall(pore_conditions_.begin(grid_, filling_.share, fluid_.surface(), fluid_.surface_moment()));
   }

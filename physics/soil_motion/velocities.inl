@@ -70,6 +70,11 @@ void SoilMotion<dim, Phases>::constrain(double t, Vec<dim> *v) {
 template <int dim, class Phases>
 PetscErrorCode SoilMotion<dim, Phases>::to_particles_and_back(const Vec<dim> *in, Vec<dim> *out) {
   PetscFunctionBeginUser;
+  if constexpr (Phases::liquid)
+    if (implicit_.acts) {
+      PetscCall(implicit_.to_particles_and_back(grid_, in, out));
+      PetscFunctionReturn(0);
+    }
   PetscCall((talus::to_particles_and_back<dim, fields - Phases::gas>(grid_, in, out)));
   if constexpr (Phases::gas) PetscCall(fluid_.gas_to_particles_and_back(grid_, in, out));
   PetscFunctionReturn(0);

@@ -55,10 +55,11 @@ void PoreFluid<dim, Phases>::apply_drag_to_solid(double step, const Frame &frame
   for (int i = 0; i < nodes; ++i) {
     NodalFluid at[fluids];
     for (int a = 0; a < fluids; ++a) at[a] = over_step(i, a);
+    const DragOverStep<fluids> drag(step, grid.mass[i], at);
     for (int d = 0; d < dim; ++d) {
       double v[fluids];
       for (int a = 0; a < fluids; ++a) v[a] = fluid[a * nodes + i][d];
-      resolve_drag<fluids>(step, grid.mass[i], solid[i][d], at, v);
+      drag.resolve(solid[i][d], v);
     }
   }
   limits(frame, conditions, [&](int i, FlowLimits<dim> &all) {
@@ -119,10 +120,11 @@ void PoreFluid<dim, Phases>::apply_drag_to_fluids(double step, const Frame &fram
   for (int i = 0; i < nodes; ++i) {
     NodalFluid at[fluids];
     for (int a = 0; a < fluids; ++a) at[a] = over_step(i, a);
+    const DragOverStep<fluids> drag(step, frame.grid.mass[i], at);
     for (int d = 0; d < dim; ++d) {
       double v[fluids], supported = solid[i][d];
       for (int a = 0; a < fluids; ++a) v[a] = fluid[a * nodes + i][d];
-      resolve_drag<fluids>(step, frame.grid.mass[i], supported, at, v, true);
+      drag.resolve(supported, v, true);
       for (int a = 0; a < fluids; ++a) fluid[a * nodes + i][d] = v[a];
     }
   }

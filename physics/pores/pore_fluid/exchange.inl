@@ -101,17 +101,22 @@ PetscErrorCode PoreFluid<dim, Phases>::gas_to_particles_and_back(FilledGrid<dim>
 }
 
 template <int dim, class Phases>
+void PoreFluid<dim, Phases>::find_gaps(const Frame &frame, const PoreConditions<dim> &conditions) {
+  std::fill_n(gap_.begin(), frame.grid.node_count(), Vec<dim>{});
+  conditions.gaps(
+      frame.grid, [&](int i) { return surface_at(nodes_[i]); },
+      [&](int i, const Vec<dim> &area) {
+        for (int d = 0; d < dim; ++d) gap_[i][d] = area[d] / nodes_[i].volume();
+      });
+}
+
+template <int dim, class Phases>
 PetscErrorCode PoreFluid<dim, Phases>::find_divergence(const Frame &frame, const PoreConditions<dim> &conditions,
                                                        const Vec<dim> *u) {
   PetscFunctionBeginUser;
   const FilledGrid<dim> &grid = frame.grid;
   const int nodes = grid.node_count(), cells = grid.cell_count();
-  std::fill_n(gap_.begin(), nodes, Vec<dim>{});
-  conditions.gaps(
-      grid, [&](int i) { return surface_at(nodes_[i]); },
-      [&](int i, const Vec<dim> &area) {
-        for (int d = 0; d < dim; ++d) gap_[i][d] = area[d] / nodes_[i].volume();
-      });
+  find_gaps(frame, conditions);
   for (int i = 0; i < nodes; ++i) {
     const double density = prescribed ? 0 : nodes_[i].volume() > 0 ? nodes_[i].mass(0) / nodes_[i].volume() : 0;
     for (int d = 0; d < dim; ++d) flux_[0][i][d] = density * (u[nodes + i][d] - u[i][d]);
