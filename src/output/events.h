@@ -39,6 +39,7 @@ inline constexpr const char *strength_trial = "strength_trial";      // factor, 
 inline constexpr const char *factor_of_safety = "factor_of_safety";  // mechanism, factor, equilibrium_at, mechanism_at
 inline constexpr const char *ranks = "ranks";                        // how they share the work
 inline constexpr const char *steps = "steps";                        // steps, evaluations, rejections, ...
+inline constexpr const char *pressure_solves = "pressure_solves";    // mean_iterations, most_iterations, unsolved
 inline constexpr const char *end = "end", *broke_off = "broke_off";
 }  // namespace event
 

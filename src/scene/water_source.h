@@ -10,7 +10,7 @@ enum class Compression { linear, exponential };
 enum class PoreStress { net, bishop };
 enum class PoreDrag { over_step, at_start };
 enum class PoreStorage { mass, rate };
-enum class PoreIntegration { at_start, at_end };
+enum class PoreIntegration { at_start, at_end, automatic };
 
 /// Pore water given as a function of place and time (phase model `drained`).
 struct Water {
@@ -49,9 +49,13 @@ struct Water {
         "computation of pore pressure: from the mass of water in the pores, or by its rate from the present storage "
         "coefficient; rate is for comparison (it loses water near saturation) and needs phases = \"unsaturated\"");
     v.choice(
-        "pressure", pressure, {{"explicit", PoreIntegration::at_start}, {"implicit", PoreIntegration::at_end}},
+        "pressure", pressure,
+        {{"explicit", PoreIntegration::at_start},
+         {"implicit", PoreIntegration::at_end},
+         {"auto", PoreIntegration::automatic}},
         "pore pressures that act in a step: those at its start, or those at its end, with which the step is that of "
-        "dry soil; implicit needs phases = \"saturated\" and integrator.kind = \"euler\"");
+        "dry soil; implicit needs phases = \"saturated\" and integrator.kind = \"euler\"; auto is implicit where that "
+        "takes less time and the scene allows it");
     v.function("suction", suction, pascal, Range{0, 1e9, {0, 1e6}}, of::place,
                "initial suction above the water table, function of x, y, z; default: hydrostatic");
     v.water_table("table", table, metre,

@@ -29,21 +29,8 @@ IntegratorSettings choose_integrator(const Scene &scene) {
   if (scene.water->storage == PoreStorage::rate && !(phases.suction && !phases.gas && by_euler))
     scene.complain("water.storage",
                    "can be \"rate\" only with phases = \"unsaturated\" and integrator.kind = \"euler\"; leave it out");
-  if (scene.water->pressure == PoreIntegration::at_end) {
-    if (!(phases.liquid && !phases.suction && by_euler))
-      scene.complain("water.pressure",
-                     "can be \"implicit\" only with phases = \"saturated\" and integrator.kind = \"euler\": take "
-                     "these, or leave it out");
-    if (scene.water->drag == PoreDrag::at_start)
-      scene.complain("water.drag", "must be \"implicit\" with water.pressure = \"implicit\"; leave it out");
-    if (!scene.transfer->average_stress)
-      scene.complain(
-          "transfer.average_stress",
-          "must be true with water.pressure = \"implicit\": water is shared by the particles of a cell; leave it out");
-    if (scene.transfer->pore_smoothing == PoreSmoothing::none)
-      scene.complain("transfer.pore_smoothing",
-                     "must be \"nodal\" with water.pressure = \"implicit\", which is one of nodes; leave it out");
-  }
+  if (scene.water->pressure == PoreIntegration::at_end)
+    if (const auto refused = implicit_pressure_refused(scene)) scene.complain(refused->key, refused->text);
   if (!phases.liquid) return settings;
   if (const std::string problem = drag_problem(settings); !problem.empty())
     scene.complain("integrator.kind", "must be \"euler\", or \"arkode\" of order 3, where pore fluids move: " +
@@ -87,28 +74,14 @@ template <int dim>
 Dynamics<dim>::Dynamics(World<dim> &world, Clock &clock, const IntegratorSettings &settings)
     : world_(world),
       clock_(clock),
-      bound_(
-          choose_step_bound(world.scene, world.laws, world.report(), settings, world.mesh.report().one_element_slice)),
+      bound_(choose_step_bound(world.scene, world.laws, world.report(), settings, world.mesh.report().one_element_slice,
+                               world.pore_integration.sentence)),
       settings_(with_bound(settings, bound_.by)),
       integrator_(make_integrator(settings_)),
       balancing_(world.scene.mesh->balance_ranks, ranks_of(world.comm), cells_to_divide(world),
                  world.mesh.divisible()) {
   check_incoming_wave();
-  check_implicit_pressure();
   check_fixed_step();
-}
-
-/// Dashpots and friction act after the pressure is found: they would squeeze pores whose water no longer gives way in
-/// the step.
-template <int dim>
-void Dynamics<dim>::check_implicit_pressure() const {
-  if (world_.scene.water->pressure != PoreIntegration::at_end) return;
-  for (const NamedBoundary &source : world_.conditions.sources())
-    if (source.kind.in_motion == OnSoil::dashpot || source.kind.in_motion == OnSoil::contact)
-      world_.scene.complain(
-          "boundary." + source.name + ".kind",
-          "acts on the velocities after pore pressures are found, which water.pressure = \"implicit\" "
-          "does not allow: take fixed, roller or tied, or water.pressure = \"explicit\"");
 }
 
 /// Integrators of higher order take dashpots once a step, which is of the first order: of a wave that comes in their

@@ -58,7 +58,6 @@ class Dynamics {
 
  private:
   void check_incoming_wave() const;
-  void check_implicit_pressure() const;
   void check_fixed_step();
   bool explicit_drag() const;
   void notice_release();

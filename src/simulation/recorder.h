@@ -132,6 +132,7 @@ class Recorder {
   void note_imbalance();
   void note_sharing();
   void note_steps();
+  void note_pressure_solves();
   void note_escaped();
   std::string ways_in_words();
   void write_escaped();

@@ -217,6 +217,28 @@ void Recorder<dim>::note_steps() {
   note("steps bounded by the error: " + std::to_string(s.by_error) + ", stability: " + std::to_string(s.by_stability) +
        ", outputs: " + std::to_string(s.by_schedule));
   note(of_.dynamics.step_bound().sentence());
+  note_pressure_solves();
+}
+
+/// What the solves for implicit pore pressure did, for the log, and a warning where one of them lacks much.
+template <int dim>
+void Recorder<dim>::note_pressure_solves() {
+  constexpr double much = 0.1;  // of the pressure
+  const PressureSolves done = of_.world.motion->pressure_solves();
+  if (done.steps == 0) return;
+  const double mean = static_cast<double>(done.iterations) / static_cast<double>(done.steps);
+  const EventValues values = {{"mean_iterations", mean},
+                              {"most_iterations", done.most_iterations},
+                              {"unsolved", done.unsolved},
+                              {"largest_share_lacking", done.worst}};
+  note("pore pressure took " + rounded(mean) + " iterations per step and " + std::to_string(done.most_iterations) +
+           " at most; " + std::to_string(done.unsolved) + " of " + std::to_string(done.steps) +
+           " solves did not converge",
+       event::pressure_solves, values);
+  if (done.worst > much)
+    warn("a solve for pore pressure left out " + rounded(100 * done.worst) +
+             " % of it: look at the pressures of that time; a smaller integrator.fraction may help",
+         event::pressure_solves, values);
 }
 
 template <int dim>

@@ -28,18 +28,19 @@ std::string objection(const Scene &scene, const std::vector<Law> &laws, const st
 }  // namespace
 
 StepBound choose_step_bound(const Scene &scene, const std::vector<Law> &laws, const std::vector<BodyReport> &bodies,
-                            const IntegratorSettings &settings, bool slice) {
+                            const IntegratorSettings &settings, bool slice, const std::string &water) {
   const FrequencyBound asked = step_rule(settings).bound;
-  if (asked == FrequencyBound::cells) return {asked, "integrator.omega_max = \"cells\""};
-  if (asked == FrequencyBound::mesh) return {asked, "integrator.omega_max = \"mesh\""};
+  if (asked == FrequencyBound::cells) return {asked, "integrator.omega_max = \"cells\"", water};
+  if (asked == FrequencyBound::mesh) return {asked, "integrator.omega_max = \"mesh\"", water};
   const std::string objection = talus::objection(scene, laws, bodies, settings, slice);
-  if (objection.empty()) return {FrequencyBound::mesh, "integrator.omega_max = \"auto\", on tetrahedra"};
-  return {FrequencyBound::cells, "integrator.omega_max = \"auto\", and " + objection};
+  if (objection.empty()) return {FrequencyBound::mesh, "integrator.omega_max = \"auto\", on tetrahedra", water};
+  return {FrequencyBound::cells, "integrator.omega_max = \"auto\", and " + objection, water};
 }
 
 std::string StepBound::sentence() const {
   return std::string("the critical step is that of ") +
-         (by == FrequencyBound::mesh ? "the whole filled mesh" : "the fastest filled cell") + " (" + why + ")";
+         (by == FrequencyBound::mesh ? "the whole filled mesh" : "the fastest filled cell") + " (" + why + ")" +
+         (water.empty() ? "" : "; " + water);
 }
 
 IntegratorSettings with_bound(IntegratorSettings settings, FrequencyBound bound) {

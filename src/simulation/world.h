@@ -20,6 +20,7 @@
 #include "simulation/clock.h"
 #include "simulation/failure.h"
 #include "simulation/overburden.h"
+#include "simulation/pore_integration.h"
 #include "simulation/work.h"
 #include "solvers/critical_step.h"
 #include "transfer/transfer.h"
@@ -114,11 +115,12 @@ class World {
   std::vector<char> present;  ///< bodies that are there now
   Conditions<dim> conditions;
   std::unique_ptr<AnySoilMotion<dim>> motion;
-  long long particle_count = 0;   ///< of all ranks
-  long long cell_count = 0;       ///< of all ranks, that held soil when they were last counted
-  double total_mass = 0;          ///< of all ranks [kg]
-  EscapedParticles<dim> escaped;  ///< particles that were taken out because they left the mesh
-  Breakdown breakdown;            ///< where the time of steps and remaps went
+  long long particle_count = 0;            ///< of all ranks
+  long long cell_count = 0;                ///< of all ranks, that held soil when they were last counted
+  double total_mass = 0;                   ///< of all ranks [kg]
+  EscapedParticles<dim> escaped;           ///< particles that were taken out because they left the mesh
+  PoreIntegrationChoice pore_integration;  ///< how pore pressure goes in time
+  Breakdown breakdown;                     ///< where the time of steps and remaps went
 
  private:
   void read_laws();
@@ -145,6 +147,7 @@ class World {
   void seed_bodies();
   void find_fastest_fall();
   void settle_bodies();
+  void choose_pore_pressure();
   void close_bases();
   void make_motion();
   void set_friction_delay();

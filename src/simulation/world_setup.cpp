@@ -286,8 +286,29 @@ void World<dim>::settle_bodies() {
       }
     MPI_Allreduce(MPI_IN_PLACE, &density, 1, MPI_DOUBLE, MPI_MAX, comm);
     wave_speed_ = std::max(wave_speed_, std::sqrt(constrained_modulus(laws[b]) / density));
-    critical_.emplace_back(mesh, laws[b], density, pore_stiffness(scene, source, phases.fluids()));
+    critical_.emplace_back(mesh, laws[b], density,
+                           pore_stiffness(scene, source, phases.fluids(), pore_integration.implicit));
   }
+}
+
+/// Explicit or implicit in time. Collective.
+template <int dim>
+void World<dim>::choose_pore_pressure() {
+  const PoreIntegration asked = scene.water->pressure;
+  if (asked == PoreIntegration::at_end)
+    if (const auto refused = implicit_pressure_refused(conditions.sources()))
+      scene.complain(refused->key, refused->text);
+  pore_integration.implicit = asked == PoreIntegration::at_end;
+  if (asked == PoreIntegration::automatic && phases.liquid) {
+    double steps[] = {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+    for (size_t b = 0; b < scene.body.size(); ++b)
+      for (const std::string &region : scene.body[b].region)
+        for (const int cell : mesh.region(region))
+          steps[0] = std::min(steps[0], critical_[b](cell)), steps[1] = std::min(steps[1], critical_[b].skeleton(cell));
+    MPI_Allreduce(MPI_IN_PLACE, steps, 2, MPI_DOUBLE, MPI_MIN, comm);
+    pore_integration = choose_pore_integration(scene, conditions.sources(), steps[0], steps[1]);
+  }
+  if (pore_integration.implicit) settle_bodies();
 }
 
 template <int dim>
@@ -300,8 +321,8 @@ void World<dim>::close_bases() {
 template <int dim>
 void World<dim>::make_motion() {
   const double relaxation = scene.transfer->relaxation * smallest_altitude_ / wave_speed_;
-  motion = make_soil_motion(
-      MotionParts<dim>{mesh, bodies, conditions, scene, pressure, relaxation, seeded_mass_, seeded_particles_});
+  motion = make_soil_motion(MotionParts<dim>{mesh, bodies, conditions, scene, pressure, relaxation, seeded_mass_,
+                                             seeded_particles_, pore_integration.implicit});
 }
 
 /// Ways of a wave while friction adapts, docs/theory (6.2): in units of the altitude, and across elastic soil and back.
@@ -317,6 +338,7 @@ void World<dim>::seed_bodies() {
   const int stride = id_stride();
   SurfaceLoads<dim> &loads = conditions.surface_loads();
   settle_bodies();
+  choose_pore_pressure();
   movers_.resize(scene.body.size()), outside_.resize(scene.body.size());
   for (size_t b = 0; b < scene.body.size(); ++b) {
     const BodySource &source = scene.body[b];

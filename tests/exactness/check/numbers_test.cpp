@@ -115,6 +115,33 @@ TEST(Check, SaysWhatTheCriticalStepIsTakenFromAndWhy) {
   falls_back(talus(folder, wet), "pore pressures of single cells scatter");
 }
 
+/// Implicit pressure pays where water is stiffer than the soil, of M = 1.35 MPa here, and is left where it is refused.
+TEST(Check, ChoosesHowPorePressureGoesInTime) {
+  const Folder folder;
+  folder.write("scene.toml", sound_scene("saturated")), folder.write("section.csv", good_section);
+  const auto with = [&](const std::string &one) {
+    return talus(folder, {"check", "scene.toml", "--json", "--set", "water.pressure=auto", one});
+  };
+  const Ending stiff = with("water.bulk_modulus=2.2 GPa"), soft = with("water.bulk_modulus=1 MPa");
+  EXPECT_TRUE(stiff.says("pore pressure is implicit in time")) << stiff.output;
+  EXPECT_TRUE(soft.says("pore pressure is explicit in time")) << soft.output;
+  EXPECT_EQ(number(stiff, "critical_step_s"), number(with("water.pressure=implicit"), "critical_step_s"));
+  EXPECT_LT(number(soft, "critical_step_s"), number(stiff, "critical_step_s"));
+  EXPECT_TRUE(with("boundary.base.kind=friction").says("boundary.base.kind acts on the velocities after"));
+  EXPECT_TRUE(with("integrator.kind=arkode").says("only with phases = \\\"saturated\\\""));
+}
+
+/// A run by the same choice says it in its log, with the iterations of the solves.
+TEST(Check, IsFollowedByARunThatSaysHowPressureWasFound) {
+  const Folder folder;
+  folder.write("scene.toml", sound_scene("saturated")), folder.write("section.csv", good_section);
+  const Ending run = talus(folder, {"run", "scene.toml", "--no-pictures", "--set", "water.pressure=auto"});
+  ASSERT_EQ(run.status, 0) << run.output;
+  EXPECT_TRUE(run.says("pore pressure is implicit in time")) << run.output;
+  EXPECT_TRUE(run.says(" iterations per step and ")) << run.output;
+  EXPECT_TRUE(run.says("; 0 of ")) << run.output;
+}
+
 TEST(Check, FillsACellOnceThatTwoOfABodysRegionsName) {
   const Folder folder;
   EXPECT_NEAR(number(check(folder, {"body.sand.region=['sand', 'sand']"}), "mass_kg"), 1000, 1e-9);

@@ -1,0 +1,57 @@
+#include "simulation/pore_integration.h"
+
+#include "base/rounded.h"
+#include "physics/phase_models.h"
+#include "scene/reader.h"
+#include "scene/transfer_source.h"
+#include "scene/water_source.h"
+#include "solvers/integrators.h"
+
+namespace talus {
+
+std::optional<PoreRefusal> implicit_pressure_refused(const Scene &scene) {
+  const PhaseTraits phases = phase_traits(scene.phases);
+  DeferredTable table = scene.integrator;
+  const bool by_euler = std::holds_alternative<EulerSettings>(read_integrator(table, phases.liquid));
+  if (!(phases.liquid && !phases.suction && by_euler))
+    return PoreRefusal{"water.pressure",
+                       "can be \"implicit\" only with phases = \"saturated\" and integrator.kind = \"euler\": take "
+                       "these, or leave it out"};
+  if (scene.water->drag == PoreDrag::at_start)
+    return PoreRefusal{"water.drag", "must be \"implicit\" with water.pressure = \"implicit\"; leave it out"};
+  if (!scene.transfer->average_stress)
+    return PoreRefusal{
+        "transfer.average_stress",
+        "must be true with water.pressure = \"implicit\": water is shared by the particles of a cell; leave it out"};
+  if (scene.transfer->pore_smoothing == PoreSmoothing::none)
+    return PoreRefusal{"transfer.pore_smoothing",
+                       "must be \"nodal\" with water.pressure = \"implicit\", which is one of nodes; leave it out"};
+  return {};
+}
+
+/// Dashpots and friction act after the pressure is found: they would squeeze pores whose water no longer gives way in
+/// the step.
+std::optional<PoreRefusal> implicit_pressure_refused(const std::vector<NamedBoundary> &boundaries) {
+  for (const NamedBoundary &source : boundaries)
+    if (source.kind.in_motion == OnSoil::dashpot || source.kind.in_motion == OnSoil::contact)
+      return PoreRefusal{"boundary." + source.name + ".kind",
+                         "acts on the velocities after pore pressures are found, which water.pressure = \"implicit\" "
+                         "does not allow: take fixed, roller or tied, or water.pressure = \"explicit\""};
+  return {};
+}
+
+PoreIntegrationChoice choose_pore_integration(const Scene &scene, const std::vector<NamedBoundary> &boundaries,
+                                              double explicit_step, double implicit_step) {
+  const double cost = 3;  // of a step over that of an explicit one, `talus bench`
+  const std::string chosen[] = {"pore pressure is explicit in time (water.pressure = \"auto\"): ",
+                                "pore pressure is implicit in time (water.pressure = \"auto\"): "};
+  auto refusal = implicit_pressure_refused(scene);
+  if (!refusal) refusal = implicit_pressure_refused(boundaries);
+  if (refusal) return {false, chosen[0] + refusal->key + " " + refusal->text};
+  const bool pays = implicit_step > cost * explicit_step;
+  return {pays, chosen[pays] + "critical steps are " + rounded(explicit_step) + " s with explicit and " +
+                    rounded(implicit_step) + " s with implicit pressure, which takes " + rounded(cost) +
+                    " times as long per step"};
+}
+
+}  // namespace talus
