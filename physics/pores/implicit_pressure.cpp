@@ -357,7 +357,7 @@ PetscErrorCode ImplicitPressure<dim>::solve(const StepStart<dim> &at, bool *chan
     const double allowed = std::max(floor, std::min(square(tolerance) * acts, square(reduction) * first_));
     lacking_ = lacks <= allowed ? 0 : std::sqrt(lacks / acts);
     if (lacks <= allowed || round == most_rounds) break;
-    PetscCall(correct(at, std::max(0.1 * allowed, 1e-2 * lacks)));
+    PetscCall(correct(at, std::max(0.1 * allowed, 1e-4 * lacks)));
     PetscCall(fit_held(at, allowed));
     *changed = true;
   }
