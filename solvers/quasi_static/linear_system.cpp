@@ -1,6 +1,7 @@
 #include "solvers/quasi_static/linear_system.h"
 
 #include <algorithm>
+#include <string>
 #include <utility>
 
 namespace talus {
@@ -16,7 +17,13 @@ PetscErrorCode factor_by(Factorization factorization, KSP ksp, Mat matrix) {
   PetscCall(KSPGetPC(ksp, &pc));
   PetscCall(PCSetType(pc, lu ? PCLU : PCCHOLESKY));
   PetscCall(PCFactorSetMatSolverType(pc, lu ? MATSOLVERMUMPS : MATSOLVERCHOLMOD));
-  if (!lu) PetscFunctionReturn(0);
+  if (!lu) {
+    const char *prefix;
+    PetscCall(KSPGetOptionsPrefix(ksp, &prefix));
+    const std::string quiet = "-" + std::string(prefix ? prefix : "") + "mat_cholmod_print";
+    PetscCall(PetscOptionsSetValue(nullptr, quiet.c_str(), "0"));  // what `factor` tells is no warning
+    PetscFunctionReturn(0);
+  }
   PetscCall(PCFactorSetUpMatSolverType(pc));
   PetscCall(PCFactorGetMatrix(pc, &factor));
   PetscCall(MatMumpsSetIcntl(factor, 14, 100));  // room for pivots, in per cent: tangents at failure ask for many
@@ -134,7 +141,7 @@ PetscErrorCode GatheredSystem::solve(PC pc, ::Vec b, ::Vec x) {
   }
   PetscCall(VecScatterBegin(to_first_, b, gathered_, INSERT_VALUES, SCATTER_FORWARD));
   PetscCall(VecScatterEnd(to_first_, b, gathered_, INSERT_VALUES, SCATTER_FORWARD));
-  if (solver_) PetscCall(KSPSolve(solver_, gathered_, solution_));
+  if (solver_ && factored_) PetscCall(KSPSolve(solver_, gathered_, solution_));
   PetscCall(VecScatterBegin(to_first_, solution_, x, INSERT_VALUES, SCATTER_REVERSE));
   PetscCall(VecScatterEnd(to_first_, solution_, x, INSERT_VALUES, SCATTER_REVERSE));
   PetscCall(tell_failure(pc));
@@ -144,7 +151,7 @@ PetscErrorCode GatheredSystem::solve(PC pc, ::Vec b, ::Vec x) {
 PetscErrorCode GatheredSystem::tell_failure(PC pc) const {
   KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
   PetscFunctionBeginUser;
-  if (solver_) PetscCall(KSPGetConvergedReason(solver_, &reason));
+  if (solver_ && factored_) PetscCall(KSPGetConvergedReason(solver_, &reason));
   int failed = reason < 0 || !factored_;
   PetscCallMPI(MPI_Bcast(&failed, 1, MPI_INT, 0, PetscObjectComm(reinterpret_cast<PetscObject>(pc))));
   PetscCall(PCSetFailedReason(pc, failed ? PC_SUBPC_ERROR : PC_NOERROR));
