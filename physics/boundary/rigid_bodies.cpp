@@ -31,6 +31,15 @@ Vec<dim> difference(const Vec<dim> &a, const Vec<dim> &b) {
   return result;
 }
 
+/// Of the shape function of corner k.
+template <int dim>
+Vec<dim> shape_gradient(const Cell<dim> &cell, int k) {
+  if (k > 0) return cell.gradient[k - 1];
+  Vec<dim> first{};
+  for (const Vec<dim> &one : cell.gradient) add_scaled<dim>(first, -1, one);
+  return first;
+}
+
 double value(const Function &function, double t) { return function.given() ? function(t) : 0; }
 
 }  // namespace
@@ -159,11 +168,11 @@ void RigidBodies<dim>::add_candidates(const FilledGrid<dim> &grid, const Body<di
     Vec<dim> now{}, outward, ignored;
     for (int k = 0; k <= dim; ++k) add_scaled<dim>(now, n[k], grid.position[grid.find_node(cell.node[k])]);
     const double away = distance(body, now, outward), gap = away - reach;
-    const double area = gap < reach ? p.volume[i] / (2 * reach) : 0;
     for (int k = 0; k <= dim && gap <= edge; ++k) {
       const bool behind = distance(body, grid.position[grid.find_node(cell.node[k])], ignored) > away;
+      const double area = -p.volume[i] * dot<dim>(shape_gradient(cell, k), outward);
       candidates_.push_back(
-          {mesh_.global_node[cell.node[k]], b, cell.node[k], gap + (behind ? entry * edge : 0), n[k] * area, outward});
+          {mesh_.global_node[cell.node[k]], b, cell.node[k], gap + (behind ? entry * edge : 0), area, outward});
     }
   }
 }
@@ -212,7 +221,8 @@ auto RigidBodies<dim>::contact_of(const Candidate &found, const FilledGrid<dim> 
   Contact c{};
   c.memory = {0, searched_ ? FrictionMemory::never : 0, FrictionMemory::never}, c.follows = anywhere;
   if (old != before_.end() && key(*old) == key(found)) c = *old;
-  c.global = found.global, c.body = found.body, c.node = found.node, c.gap = found.gap, c.area = found.area;
+  c.global = found.global, c.body = found.body, c.node = found.node, c.gap = found.gap,
+  c.area = std::max(found.area, 0.);
   c.at = grid.find_node(found.node), c.place = grid.position[c.at], c.normal = {};
   add_scaled<dim>(c.normal, -1, found.outward);
   return c;

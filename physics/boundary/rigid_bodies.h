@@ -109,7 +109,7 @@ class RigidBodies {
   struct Candidate {
     long long global;
     int body, node;
-    double gap, area;
+    double gap, area;  // of the soil's surface, as the integral of the node's gradient has it
     Vec<dim> outward;
   };
   using Arm = Eigen::Matrix<double, dim, freedoms>;

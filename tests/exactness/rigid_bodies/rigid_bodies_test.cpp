@@ -100,6 +100,20 @@ TEST(RigidBodies, momentum_and_angular_momentum_of_the_pair_are_exact) {
   for (const double one : lost(soil, rigid, v)) EXPECT_NEAR(one, 0, 1e-12 * 1500 * 0.24 * 2);
 }
 
+/// The area on which a plate adheres is that of the soil below it, however many particles it has; the ends of the plate
+/// are known to half a cell.
+TEST(RigidBodies, adhere_by_area) {
+  for (const std::string particles : {"3", "12"}) {
+    std::string text = scene_of(
+        "polygon = [[0.3, 1], [1.7, 1], [1.7, 1.2], [0.3, 1.2]]\nmass = 560\nrotation = 0\nforce = [10000, 0]\n"
+        "friction_angle = 0\nadhesion = 2000\n",
+        stage + "0.1\ndamping = 0.3\n");
+    text.insert(text.find("law ="), "particles_per_cell = " + particles + "\n");
+    const HistoryTable history = run(text);
+    EXPECT_NEAR(history.column("block_force_x_N").back(), -2800, 0.05 * 2800) << particles;
+  }
+}
+
 TEST(RigidBodies, fall_freely) {
   const HistoryTable history =
       run(scene_of("polygon = [[0.7, 1.3], [1.3, 1.3], [1.3, 1.7]]\nmass = 70\nfriction_angle = 0\n"
