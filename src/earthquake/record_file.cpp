@@ -98,10 +98,11 @@ std::size_t choose_channel(const Text &text, const std::string &component, std::
 }
 
 /// PEER NGA: the fourth line has the number of values and the step, in old files without their names; the third says
-/// that accelerations are in g.
+/// in which unit accelerations are, g in those of PEER.
 GroundMotion read_peer(const Text &text) {
   static const std::regex named(R"(NPTS\s*=\s*(\d+)\s*,\s*DT\s*=\s*([\d.Ee+-]+))", std::regex::icase),
-      bare(R"(^\s*(\d+)\s+([\d.]+)\s+NPTS,\s*DT)", std::regex::icase);
+      bare(R"(^\s*(\d+)\s+([\d.]+)\s+NPTS,\s*DT)", std::regex::icase),
+      in_unit(R"(UNITS? OF\s+([A-Za-z0-9/^%]+))", std::regex::icase);
   for (std::size_t k = 0; k < text.lines().size() && k < 8; ++k) {
     std::smatch found;
     if (!std::regex_search(text.lines()[k], found, named) && !std::regex_search(text.lines()[k], found, bare)) continue;
@@ -109,7 +110,12 @@ GroundMotion read_peer(const Text &text) {
     static const std::regex other("VELOCITY|DISPLACEMENT", std::regex::icase);
     if (std::regex_search(kind, other))
       text.complain(k - 1, "is a record of velocity or displacement; take the .AT2 file");
-    return {std::stod(found[2]), text.values(k + 1, std::stoul(found[1]), gravity)};
+    std::smatch named_unit;
+    const bool said = std::regex_search(kind, named_unit, in_unit);
+    const double unit = said ? acceleration_unit(named_unit[1]) : gravity;
+    if (unit == 0)
+      text.complain(k - 1, "has accelerations in " + named_unit[1].str() + "; known are g, cm/s2, gal, m/s2");
+    return {std::stod(found[2]), text.values(k + 1, std::stoul(found[1]), unit)};
   }
   text.complain("has no line with NPTS and DT");
 }

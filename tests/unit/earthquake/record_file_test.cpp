@@ -50,6 +50,11 @@ NPTS=      7, DT=   .0050 SEC,
   -.1000000E-02   .2000000E-02  -.3000000E-02   .4000000E-02  -.5000000E-02
    .6000000E-02   .7000000E-02
 )";
+/// The same record in another unit.
+std::string peer_in(const std::string &unit) {
+  std::string text = peer;
+  return text.replace(text.find("UNITS OF G") + 9, 1, unit);
+}
 const std::string csmip = R"(Corrected accelerogram   Chan  1:  90 Deg     Station No. 00000
      6 points of accel data equally spaced at  .010 sec, in cm/sec2. (8f10.3)
      1.000    -2.000     3.000    -4.000
@@ -91,6 +96,7 @@ TEST_F(Records, OfEachFormatAreRead) {
   EXPECT_EQ(nga.acceleration.size(), 7U);
   EXPECT_NEAR(nga.acceleration[6], 0.007 * g, 1e-12);
   EXPECT_NEAR(nga.peak(), 0.007 * g, 1e-12);
+  EXPECT_NEAR(read(peer_in("CM/S2")).peak(), 7e-5, 1e-12);
   const GroundMotion first = read(csmip, "1"), second = read(csmip, "2");
   EXPECT_DOUBLE_EQ(first.step, 0.01);
   EXPECT_THAT(first.acceleration, ElementsAre(0.01, -0.02, 0.03, -0.04, 0.05, -0.06));
@@ -126,6 +132,7 @@ TEST_F(Records, WithRoundedTimesAreEven) {
 }
 
 TEST_F(Records, ThatAreBadAreRefused) {
+  EXPECT_THAT(refusal(peer_in("FURLONGS")), HasSubstr("has accelerations in FURLONGS"));
   EXPECT_THAT(refusal(peer.substr(0, peer.size() - 20)), HasSubstr("says that it has 7 values, and has "));
   EXPECT_THAT(refusal(csmip), HasSubstr("2 channels of acceleration: choose one by component = \"1\" to \"2\""));
   EXPECT_THAT(refusal(csmip, "3"), HasSubstr("choose one"));
