@@ -42,12 +42,12 @@ PetscErrorCode LimitState<dim>::creep(double small, LimitSearch *result) {
     PetscCall(VecAXPY(way, 1, x_));
     result->residual = (residual_ + prop_force_) / problem_.force_scale();
     PetscCall(VecNorm(way, NORM_INFINITY, &result->displacement));
+    auto &curve = result->curve;
+    curve.emplace_back(result->displacement, result->residual);
     if (result->residual <= small) {
       result->verdict = LimitVerdict::equilibrium;
       break;
     }
-    auto &curve = result->curve;
-    curve.emplace_back(result->displacement, result->residual);
     const auto half = std::find_if(curve.rbegin(), curve.rend(),
                                    [&](const auto &one) { return one.first < result->displacement / 2; });
     if (result->displacement > far_from_elastic * elastic_displacement_ && half != curve.rend() &&
