@@ -3,7 +3,7 @@ include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 # How a host finds again what the rooms link; TalusConfig.cmake looks for the same. Eigen stays inside: its alignment depends on -march.
-set(known_outside MPI::MPI_CXX PkgConfig::PETSC PkgConfig::LAPACK PkgConfig::HDF5 PkgConfig::MUPARSER tomlplusplus::tomlplusplus nlohmann_json::nlohmann_json SUNDIALS::arkode SUNDIALS::nvecpetsc)
+set(known_outside MPI::MPI_CXX PkgConfig::PETSC PkgConfig::LAPACK PkgConfig::HDF5 PkgConfig::MUPARSER tomlplusplus::tomlplusplus nlohmann_json::nlohmann_json SUNDIALS::arkode SUNDIALS::nvecpetsc gomp)
 
 # The static libraries that `target` stands on, itself included, and what they link from outside.
 function(collect_rooms target rooms outside)
@@ -17,7 +17,7 @@ function(collect_rooms target rooms outside)
   foreach(link IN LISTS links)
     if(link MATCHES "^talus_" AND NOT link IN_LIST ${rooms})
       collect_rooms(${link} ${rooms} ${outside})
-    elseif(link MATCHES "::" AND NOT link STREQUAL "Eigen3::Eigen")
+    elseif(link MATCHES "::|^gomp$" AND NOT link STREQUAL "Eigen3::Eigen")
       list(APPEND ${outside} ${link})
     endif()
   endforeach()

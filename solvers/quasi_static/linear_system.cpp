@@ -1,5 +1,7 @@
 #include "solvers/quasi_static/linear_system.h"
 
+#include <omp.h>
+
 #include <algorithm>
 #include <string>
 #include <utility>
@@ -22,6 +24,7 @@ PetscErrorCode factor_by(Factorization factorization, KSP ksp, Mat matrix) {
     PetscCall(KSPGetOptionsPrefix(ksp, &prefix));
     const std::string quiet = "-" + std::string(prefix ? prefix : "") + "mat_cholmod_print";
     PetscCall(PetscOptionsSetValue(nullptr, quiet.c_str(), "0"));  // what `factor` tells is no warning
+    omp_set_max_active_levels(0);  // CHOLMOD's four threads of each small front take longer than one
     PetscFunctionReturn(0);
   }
   PetscCall(PCFactorSetUpMatSolverType(pc));
