@@ -109,7 +109,6 @@ def draw(talus, folder=None):
         shutil.copy(f"{made}/film/pictures/movie_displacement.gif", HERE / "slide.gif")
         results = Results(folder)
         draw_section(results, HERE / "rain.png")
-        plt.rcParams["savefig.dpi"] = 120
         draw_points(results, HERE / "points.png")
         [(_, paths)] = draw_stress_paths(results, results.folder / "pictures")
         shutil.copy(paths, HERE / "paths.png")

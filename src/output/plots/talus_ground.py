@@ -114,12 +114,14 @@ def max_of(edges):
 def widest(values, reach):
     """The largest value within so many cells along both axes."""
     for axis in range(values.ndim):
-        result = values.copy()
-        for by in (*range(-reach, 0), *range(1, reach + 1)):
-            to, source = shifted(values.shape[axis], by)
-            at = (slice(None),) * axis
-            np.maximum(result[(*at, to)], values[(*at, source)], out=result[(*at, to)])
-        values = result
+        at, size = (slice(None),) * axis, values.shape[axis]
+        result = np.pad(values, [(reach, reach) if along == axis else (0, 0) for along in range(values.ndim)], mode="edge")
+        width, whole = 1, 2 * reach + 1
+        while width < whole:  # the largest of so many cells from each one on
+            step = min(width, whole - width)
+            np.maximum(result[(*at, slice(None, -step))], result[(*at, slice(step, None))], out=result[(*at, slice(None, -step))])
+            width += step
+        values = result[(*at, slice(size))]
     return values
 
 

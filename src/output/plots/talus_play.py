@@ -90,10 +90,8 @@ def slide_over_time(results, packed):
         return None
     fields = [field for field in FIELDS if all(frame.scalar(field) is not None for frame in (frames[0], frames[-1]))]
     size = spacing_of(results)
-    colours = {}
-    for field in fields:
-        some = chosen_snapshots(results)
-        colours[field] = Colours(field, scaled_by(results, some, field), spacing=size, shown=some)
+    some = chosen_snapshots(results)
+    colours = {field: Colours(field, scaled_by(results, some, field), spacing=size, shown=some) for field in fields}
     fields = [field for field in fields if field == fields[0] or not colours[field].nothing]
     dimension = frames[0].position().shape[1]
     ids = stand_ins(results, frames, 2 * dimension + len(fields))

@@ -9,15 +9,19 @@ import sys
 
 import numpy as np
 
+from talus_cores import on_two_cores
 from talus_factor import draw_factor
 from talus_histories import draw_histories
 from talus_lines import draw_lines
+from talus_model import draw_model
+from talus_modelled import read_model
 from talus_movie import draw_movies
 from talus_paths import draw_stress_paths
 from talus_pdf import print_report
-from talus_report import write_report
+from talus_play import scripts
+from talus_report import Drawn, write_report
 from talus_results import NOT_ENDED, Results
-from talus_sections import draw_sections
+from talus_sections import section_tasks
 from talus_slip import draw_slip_surface
 from talus_units import use
 
@@ -97,13 +101,14 @@ def draw(folder, fields=None, times=None, log=False, slip_surface=False, since=N
     usual = [field for field in FIELDS if field != "state" or lost_strength(results)]
     whole, results = results, results.before_reduction()
     of_mechanism = [field for field in fields or () if field == OF_MECHANISM and whole is not results]
-    sections = draw_sections(results, [field for field in fields or usual if field not in of_mechanism], times, pictures, log,
-                             None if fields or times else OVER_TIME)
+    sections = section_tasks(results, [field for field in fields or usual if field not in of_mechanism], times, pictures, log, None if fields or times else OVER_TIME)
     if of_mechanism:
-        sections += draw_sections(whole.of_reduction(), of_mechanism, times, pictures)
-    curves = draw_histories(results, pictures) + draw_stress_paths(results, pictures)
-    curves += draw_lines(results, pictures, times) + slip
-    report = write_report(results, sections, curves, draw_factor(whole, pictures))
+        sections += section_tasks(whole.of_reduction(), of_mechanism, times, pictures)
+    model = read_model(results.folder)
+    others = [lambda: draw_histories(results, pictures), lambda: model and draw_model(model, pictures / "model.png"), lambda: scripts(results),
+              lambda: draw_stress_paths(results, pictures), lambda: draw_lines(results, pictures, times), lambda: draw_factor(whole, pictures)]
+    *sections, histories, modelled, played, paths, lines, factor = on_two_cores([*sections, *others])
+    report = write_report(results, model, Drawn(sections, histories + paths + lines + slip, factor, modelled, played))
     if without:
         raise without
     return report

@@ -5,6 +5,7 @@ import csv
 import datetime
 import html
 import pathlib
+import typing
 
 import numpy as np
 
@@ -12,11 +13,10 @@ from talus_factor import about_water, factor_lines, lost_stages, short
 from talus_histories import base_friction
 from talus_loads import loads_at
 from talus_measures import flow, known
-from talus_model import draw_model
-from talus_modelled import read_model, stage_rows
+from talus_modelled import stage_rows
 from talus_moments import moved_before
 from talus_outcomes import in_words, outcome
-from talus_play import ROWS, scripts
+from talus_play import ROWS
 from talus_results import NOT_ENDED, SLOW, largest_displacement, read_factor, sliding, still_moving
 from talus_units import Keys, at_time, capital, readable_unit, text_of, words
 from talus_workbook import write_workbook
@@ -44,25 +44,34 @@ PAGE = """<!doctype html>
 """
 
 
-def write_report(results, sections, histories, factor=()):
-    """`sections` [(field, large picture, sheet of times)], `histories` and `factor` [(quantity, picture)] -> path of the page. `results` are those before
-    the strength is reduced where a factor of safety was asked for."""
+class Drawn(typing.NamedTuple):
+    """What a report shows: `sections` [(field, large picture, sheet of times or None)], `histories` and `factor` [(quantity, picture)], the picture of the
+    `model` or None, and the elements by which the page plays."""
+
+    sections: list
+    histories: list
+    factor: list
+    model: pathlib.Path | None
+    played: str
+
+
+def write_report(results, model, drawn):
+    """The path of the page. `results` are those before the strength is reduced where a factor of safety was asked for."""
     css = (pathlib.Path(__file__).parent / "report.css").read_text()
-    model = read_model(results.folder)
     found = key_results(results, model)
     parts = [
         header(results, model),
-        f'<div class="first">{cards([one for one in found if not of_ledgers(one)])}{first_picture(sections)}</div>',
+        f'<div class="first">{cards([one for one in found if not of_ledgers(one)])}{first_picture(drawn.sections)}</div>',
         warnings(results),
-        section("Factor of safety", factor_block(read_factor(results), factor)),
-        section("Sections", "".join(field_block(*one) for one in sections)),
-        section("Histories", grid(histories), "curves"),
-        section("Model", model_block(results, model)),
+        section("Factor of safety", factor_block(read_factor(results), drawn.factor)),
+        section("Sections", "".join(field_block(*one) for one in drawn.sections)),
+        section("Histories", grid(drawn.histories), "curves"),
+        section("Model", model_block(model, drawn.model)),
         summary(results, model),
         section("Ledgers and counts", cards([one for one in found if of_ledgers(one)])),
         folded("Scene as run", results.scene_text),
         folded("Last lines of the log", "\n".join(results.log_lines()[-LOG_LINES:])),
-        scripts(results),
+        drawn.played,
     ]
     page = PAGE.format(title=html.escape(results.title), css=css, body="".join(parts), foot=html.escape(results.program))
     path = results.folder / "report.html"
@@ -293,11 +302,10 @@ def cards(numbers):
     return f'<section class="cards">{boxes}</section>\n'
 
 
-def model_block(results, model):
+def model_block(model, drawn):
     """What was modelled: its picture, and a table of the stages with what acts in each."""
     if model is None:
         return ""
-    drawn = draw_model(model, results.folder / "pictures" / "model.png")
     return f'<div class="field">{picture(drawn, "Model at the start")}</div><div class="tables">{lined_table("Stages", stage_rows(model))}</div>'
 
 

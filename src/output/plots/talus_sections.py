@@ -1,7 +1,6 @@
 """Pictures of the particles: sections in plane strain, slices from the side, bodies cut through and from above."""
 
-import os
-import signal
+import functools
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -13,7 +12,6 @@ import talus_style as style
 from talus_colours import Colours
 from talus_factor import short
 from talus_ground import Ground
-from talus_interrupt import end_with_parent
 from talus_modelled import read_model
 from talus_moments import chosen_snapshots, origins, scaled_by, since_reset, telling, with_stress
 from talus_outcomes import cell_size
@@ -151,13 +149,15 @@ class Painter:
         return self._tiles[key]
 
     def _image(self, snapshot, field, k, colours, frame):
-        """The picture of a field [rows, columns, 3 or 4]."""
+        """The picture of a field, bytes [rows, columns, 3 or 4]."""
         value = snapshot.scalar(field)[0] * colours.factor
         reach = int(round(max(ISLAND * self.cell, 0.75 * self.spacing) / frame.pixel))
         if isinstance(self.views[k], (Oblique, MapView)):
             laid = self.ground.below(snapshot.position(), self._surface(snapshot)[0])
-            return self._sight(snapshot, k, frame.shape[1]).painted(laid, value, colours, self.spacing, reach)
-        return painted(self._tiled(snapshot, k, frame), value, snapshot.body(), self.tints if self.flat else np.tile(SOIL, (len(self.results.bodies), 1)), colours, reach)
+            image = self._sight(snapshot, k, frame.shape[1]).painted(laid, value, colours, self.spacing, reach)
+        else:
+            image = painted(self._tiled(snapshot, k, frame), value, snapshot.body(), self.tints if self.flat else np.tile(SOIL, (len(self.results.bodies), 1)), colours, reach)
+        return np.round(255 * image).astype(np.uint8)
 
     def count_from(self, field, snapshots):
         """Lets the pictures say what these snapshots count the field from: each in its title where that differs."""
@@ -423,58 +423,24 @@ def slip_surfaces(results, folder):
     return found
 
 
-def draw_sections(results, fields, times, folder, log=False, over_time=None):
-    """FIELD_large.png of each field that the run has, and FIELD.png of those `over_time`, or of all; plastic strain on a logarithmic scale if `log`. The
-    program chooses snapshots without `times`. Returns [(field, path of the large one, path of the sheet over time or None)]."""
+def section_tasks(results, fields, times, folder, log=False, over_time=None):
+    """Functions, one for each field that the run has. Each draws FIELD_large.png, and FIELD.png of those `over_time`, or of all; plastic strain on a logarithmic
+    scale if `log`. The program chooses snapshots without `times`. They return (field, path of the large one, path of the sheet over time or None)."""
     if not len(results.snapshots[0].position()):
         return []
     chosen = chosen_snapshots(results, times)
     after, _ = ([], "") if times else since_reset(results, chosen, "displacement")
     painter = Painter(results, chosen + after, as_asked=bool(times))
     painter.slips = slip_surfaces(results, folder)
-    fields = [field for field in fields if not any(snapshot.scalar(field) is None for snapshot in chosen)
-              and any(np.isfinite(snapshot.scalar(field)[0]).any() for snapshot in chosen)]  # nowhere: such as the mobilised friction of soil without friction
-    paths = {field: (folder / f"{field}_large.png", folder / f"{field}.png" if over_time is None or field in over_time else None) for field in fields}
 
     def draw(field):
         snapshots, painter.reset = (chosen, "") if times else since_reset(results, with_stress(results, chosen, field), field)
         if times:
             painter.count_from(field, snapshots)
         colours = painter.colours(field, snapshots, log)
-        large, sheet = paths[field]
-        painter.large(field, colours, scaled_by(results, snapshots, field), large)
-        if sheet:
-            painter.over_time(field, colours, snapshots, sheet)
+        large = painter.large(field, colours, scaled_by(results, snapshots, field), folder / f"{field}_large.png")
+        sheet = painter.over_time(field, colours, snapshots, folder / f"{field}.png") if over_time is None or field in over_time else None
+        return field, large, sheet
 
-    on_two_cores(draw, fields)
-    return [(field, *paths[field]) for field in fields]
-
-
-def on_two_cores(draw, fields):
-    """Draws all fields: every second one in a process of its own where there is a second core. What that one fails to draw is drawn here, where errors are
-    heard."""
-    if len(fields) < 2 or len(os.sched_getaffinity(0)) < 2:
-        for field in fields:
-            draw(field)
-        return
-    other = os.fork()
-    if other == 0:
-        failed = 1
-        try:
-            if "TALUS_PROGRAM" in os.environ:
-                end_with_parent()
-            for field in fields[1::2]:
-                draw(field)
-            failed = 0
-        finally:
-            os._exit(failed)
-    try:
-        for field in fields[::2]:
-            draw(field)
-    except BaseException:
-        os.kill(other, signal.SIGTERM)
-        raise
-    finally:
-        failed = os.waitpid(other, 0)[1]
-    for field in fields[1::2] if failed else ():
-        draw(field)
+    return [functools.partial(draw, field) for field in fields if not any(snapshot.scalar(field) is None for snapshot in chosen)
+            and any(np.isfinite(snapshot.scalar(field)[0]).any() for snapshot in chosen)]  # nowhere: such as the mobilised friction of soil without friction

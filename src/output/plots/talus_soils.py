@@ -33,15 +33,15 @@ def painted(owner, value, body, tint, colours, reach=0):
     """The picture [rows, columns, 4] of a section: `owner` numbers the particle of each pixel, -1 outside the soil; `value` and `body` belong to the
     particles, and `tint` holds the colours of the bodies. Soil has its own colour where the field is nothing in areas wider than twice `reach`."""
     soil = owner >= 0
-    picture = np.zeros((*owner.shape, 4))
     mine = owner[soil]
-    # the colours of particles, of which there are fewer than of pixels
-    with_field, own_colour = colours.map(np.ma.filled(colours.norm(value), np.nan)), np.insert(tint[body], 3, 1, axis=1)
+    # the colours of particles, of which there are fewer than of pixels: those of their soils, then those of the field
+    colour = np.concatenate([tint[body], colours.map(np.ma.filled(colours.norm(value), np.nan))[:, :3]]).astype(np.float32)
     plain = np.ones(owner.shape, bool)
     plain[soil] = colours.plain(value)[mine]
     plain = plain[soil] if colours.names else without_islands(plain, reach)[soil] | ~np.isfinite(value)[mine]
-    with_field[:, 3] = 1
-    picture[soil] = np.where(plain[:, None], own_colour[mine], with_field[mine])
+    picture = np.zeros((*owner.shape, 4), np.float32)
+    picture[soil, :3] = colour[np.where(plain, mine, len(value) + mine)]
+    picture[soil, 3] = 1
     dark = borders(np.where(soil, body[owner], -1)) if len(tint) > 1 else np.zeros(owner.shape, bool)
     picture[dark, :3] = (1 - LINE) * picture[dark, :3] + LINE * np.array(to_rgb(style.INK))
     return picture

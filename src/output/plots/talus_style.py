@@ -1,9 +1,9 @@
 """How the pictures of Talus look: type, colours, units of a size that reads well."""
 
-import io
 import os
 import pathlib
 import re
+import struct
 import zlib
 
 import matplotlib
@@ -13,8 +13,6 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.colors import LinearSegmentedColormap, ListedColormap
 from matplotlib.ticker import FuncFormatter, Locator, MaxNLocator, NullFormatter
-from PIL import Image
-from PIL.PngImagePlugin import PngInfo
 
 from talus_units import length
 
@@ -25,13 +23,13 @@ RESOLUTION = 120  # dots per inch
 PACKED = 4  # of 9: how thoroughly pictures are packed
 
 plt.rcParams.update({
-    "font.family": "DejaVu Sans", "font.size": 9, "axes.titlesize": 9.5, "axes.labelsize": 9,
+    "font.family": "DejaVu Sans", "font.size": 9, "axes.titlesize": 9.5, "axes.titley": 1.0, "axes.labelsize": 9,
     "text.color": INK, "axes.labelcolor": INK, "axes.edgecolor": SOFT, "xtick.color": SOFT, "ytick.color": SOFT,
     "xtick.labelcolor": INK, "ytick.labelcolor": INK, "xtick.labelsize": 8, "ytick.labelsize": 8,
     "axes.linewidth": 0.7, "xtick.major.width": 0.7, "ytick.major.width": 0.7,
     "xtick.major.size": 3, "ytick.major.size": 3,
     "axes.spines.top": False, "axes.spines.right": False, "axes.prop_cycle": matplotlib.cycler(color=LINES),
-    "figure.facecolor": "white", "savefig.facecolor": "white", "savefig.dpi": RESOLUTION, "legend.frameon": False,
+    "figure.facecolor": "white", "legend.frameon": False,
 })
 
 
@@ -151,16 +149,22 @@ def program():
     return "Talus " + re.search(r"project\(Talus VERSION (\S+)", lists.read_text()).group(1) if lists.exists() else "Talus"
 
 
-def save(figure, path, **options):
-    """Writes a figure as PNG, whose metadata say in "Software" which program drew it, and closes it. `options` are those of matplotlib's
-    savefig, such as dpi. Returns the path."""
+def save(figure, path, dpi=RESOLUTION):
+    """Writes a figure as PNG, whose metadata say in "Software" which program drew it, and closes it. Returns the path."""
     path.parent.mkdir(exist_ok=True)
-    drawn = io.BytesIO()  # packed below: that takes two thirds of the time without the opacity, which is 1 all over, and a little less thoroughly
-    figure.savefig(drawn, format="rgba", **options)
-    dpi = options.get("dpi", plt.rcParams["savefig.dpi"])
-    size = tuple(int(length) for length in figure.bbox_inches.size * dpi)
-    about = PngInfo()
-    about.add_text("Software", f"{program()}, Matplotlib {matplotlib.__version__}")
-    Image.frombuffer("RGBA", size, drawn.getbuffer()).convert("RGB").save(path, "png", pnginfo=about, dpi=(dpi, dpi), compress_level=PACKED)
+    figure.set_dpi(dpi)
+    figure.canvas.draw()
+    path.write_bytes(png(np.asarray(figure.canvas.buffer_rgba())[..., :3], dpi))
     plt.close(figure)
     return path
+
+
+def png(picture, dpi):
+    """A file of a picture [rows, columns, 3]. Lines are packed as they are: charts are smaller so, and in a third of the time that a choice among the filters
+    of the format takes."""
+    lines = np.zeros((len(picture), 1 + picture[0].size), np.uint8)
+    lines[:, 1:] = picture.reshape(len(picture), -1)
+    metre, about = round(dpi / 0.0254), f"Software\0{program()}, Matplotlib {matplotlib.__version__}".encode("latin-1")
+    parts = ((b"IHDR", struct.pack(">IIBBBBB", picture.shape[1], picture.shape[0], 8, 2, 0, 0, 0)), (b"tEXt", about), (b"pHYs", struct.pack(">IIB", metre, metre, 1)),
+             (b"IDAT", zlib.compress(lines, PACKED)), (b"IEND", b""))
+    return b"\x89PNG\r\n\x1a\n" + b"".join(struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data)) for kind, data in parts)

@@ -48,7 +48,7 @@ def nearest(points, shape, reach, size, aside=None):
     z2 = np.zeros_like(x) if aside is None else aside.astype(np.float32) ** 2
     row, column = y.astype(int), x.astype(int)
     seen = (row >= 0) & (row < shape[0]) & (column >= 0) & (column < shape[1])
-    jumps = [*(2**k for k in range(int(np.ceil(np.log2(max(reach * np.max(size), 1)))), -1, -1)), 1]
+    jumps = [*(2**k for k in range(int(np.ceil(np.log2(max(reach * np.max(size), 1)))) - 1, -1, -1)), 1]
     pixels_around = (2 * reach * size[seen].astype(float)) ** 2
     if np.sum(pixels_around + POINT) < 8 * len(jumps) * owner.size:
         squared = by_points(np.flatnonzero(seen), x, y, z2, scale, reach * size, owner)

@@ -2,7 +2,7 @@
 
 import math
 import zipfile
-from xml.sax.saxutils import escape, quoteattr
+from html import escape
 
 MAIN = "http://schemas.openxmlformats.org/spreadsheetml/2006/main"
 OFFICE = "http://schemas.openxmlformats.org/officeDocument/2006/relationships"
@@ -28,7 +28,7 @@ def write_workbook(path, tables):
                                + "".join(f'<Override PartName="/xl/worksheets/sheet{k}.xml" ContentType="{SHEET}worksheet+xml"/>' for k in numbers) + "</Types>",
         "_rels/.rels": f'<Relationships xmlns="{PACKAGE}relationships">{relation("xl/workbook.xml", "officeDocument", 1)}</Relationships>',
         "xl/workbook.xml": f'<workbook xmlns="{MAIN}" xmlns:r="{OFFICE}"><sheets>'
-                           + "".join(f'<sheet name={quoteattr(name[:31])} sheetId="{k}" r:id="r{k}"/>' for k, name in zip(numbers, tables)) + "</sheets></workbook>",
+                           + "".join(f'<sheet name="{escape(name[:31])}" sheetId="{k}" r:id="r{k}"/>' for k, name in zip(numbers, tables)) + "</sheets></workbook>",
         "xl/_rels/workbook.xml.rels": f'<Relationships xmlns="{PACKAGE}relationships">' + "".join(relation(f"worksheets/sheet{k}.xml", "worksheet", k) for k in numbers)
                                       + "</Relationships>"}
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED, compresslevel=1) as book:

@@ -1,5 +1,6 @@
 """What the pictures of a run choose to show: argument 1 is the folder of the scripts."""
 
+import functools
 import json
 import os
 import pathlib
@@ -8,6 +9,7 @@ import signal
 import subprocess
 import sys
 import tempfile
+import time
 import types
 import unittest
 import unittest.mock
@@ -26,6 +28,7 @@ import talus_sections  # noqa: E402
 import talus_study  # noqa: E402
 import talus_soil  # noqa: E402
 from talus_colours import Colours  # noqa: E402
+from talus_cores import on_two_cores  # noqa: E402
 from talus_histories import base_friction, draw_histories, drawn_energies, potential_that_left  # noqa: E402
 from talus_measures import MEASURES, flow  # noqa: E402
 from talus_moments import chosen_snapshots, since_reset, telling, with_stress  # noqa: E402
@@ -919,12 +922,10 @@ class Soils(unittest.TestCase):
         value[:100], value[305] = 0, 0  # a quarter of the soil, and one particle amid the rest
         scale = Colours("displacement", [types.SimpleNamespace(scalar=lambda field: (value, "m"))])
         tint, body = tints(["clay"]), np.zeros(400, int)
-        at = {name: painted(owner, value, body, tint, scale, reach)[row, column, :3].tolist() for name, reach, row, column in
+        at = {name: painted(owner, value, body, tint, scale, reach)[row, column, :3] for name, reach, row, column in
               (("hole", 0, 155, 55), ("none", 8, 155, 55), ("quarter", 8, 20, 55), ("edge", 8, 0, 0))}
-        self.assertEqual(at["hole"], tint[0].tolist())
-        self.assertEqual(at["quarter"], tint[0].tolist())
-        self.assertEqual(at["edge"], tint[0].tolist())
-        self.assertEqual(at["none"], list(scale.map(0.0)[:3]))
+        for where, colour in (("hole", tint[0]), ("quarter", tint[0]), ("edge", tint[0]), ("none", scale.map(0.0)[:3])):
+            np.testing.assert_allclose(at[where], colour, rtol=1e-6, err_msg=where)
 
     def test_an_outline_is_seen_where_the_soil_has_left_it(self):
         soil = np.zeros((10, 20), bool)
@@ -1073,7 +1074,8 @@ class SlipSurface(unittest.TestCase):
                                                 escaped=None, history=None, title="slope", when=lambda one: f"t = {one.time} s", rigid_outlines=lambda time: {})
                 sheets = []
                 with unittest.mock.patch.object(talus_sections.style, "save", lambda figure, path: sheets.append(figure)):
-                    talus_sections.draw_sections(results, ["displacement"], None, folder)
+                    for draw in talus_sections.section_tasks(results, ["displacement"], None, folder):
+                        draw()
                 drawn = {curve.get_label(): curve.get_xydata() for curve in sheets[0].axes[0].lines}
                 legend = [text.get_text() for one in (*sheets[0].legends, *sheets[0].artists) if hasattr(one, "get_texts") for text in one.get_texts()]
                 for there, name, points in ((found, "slip surface, where its soil was at the start", line), (factor, "slip surface of the factor of safety, 1.234", line + 1)):
@@ -1089,31 +1091,34 @@ class SlipSurface(unittest.TestCase):
 
 
 class Cores(unittest.TestCase):
-    def drawn_by(self, cores, fails=False):
-        """{field: the process that drew it}"""
+    def done_by(self, cores, fails=False):
+        """The processes that did four tasks, each of which tells its own."""
         here = os.getpid()
-        with tempfile.TemporaryDirectory() as place, unittest.mock.patch("os.sched_getaffinity", lambda process: set(range(cores))):
-            def draw(field):
-                if fails and os.getpid() != here:
-                    raise OSError("no space")
-                (pathlib.Path(place) / field).write_text(str(os.getpid()))
 
-            talus_sections.on_two_cores(draw, ["a", "b", "c"])
-            return {path.name: int(path.read_text()) for path in pathlib.Path(place).iterdir()}
+        def work(number):
+            if fails and os.getpid() != here:
+                raise OSError("no space")
+            time.sleep(0.05)
+            return number, os.getpid()
 
-    def test_share_the_fields(self):
+        with unittest.mock.patch("os.sched_getaffinity", lambda process: set(range(cores))):
+            numbers, processes = zip(*on_two_cores([functools.partial(work, number) for number in range(4)]))
+        self.assertEqual(numbers, (0, 1, 2, 3))
+        return processes
+
+    def test_share_the_work(self):
         here = os.getpid()
-        self.assertEqual(self.drawn_by(1), dict.fromkeys("abc", here))
-        self.assertEqual({field: process == here for field, process in self.drawn_by(2).items()}, {"a": True, "b": False, "c": True})
-        with unittest.mock.patch("sys.stderr"):
-            self.assertEqual(self.drawn_by(2, fails=True), dict.fromkeys("abc", here))
+        self.assertEqual(self.done_by(1), (here,) * 4)
+        shared = self.done_by(2)
+        self.assertEqual((shared.count(here), len(set(shared))), (2, 2))
+        self.assertEqual(self.done_by(2, fails=True), (here,) * 4)
 
     def test_hear_what_cannot_be_drawn(self):
-        def draw(field):
-            raise OSError(f"no space for {field}")
+        def work():
+            raise OSError("no space")
         for cores in (1, 2):
-            with unittest.mock.patch("os.sched_getaffinity", lambda process: set(range(cores))), self.assertRaisesRegex(OSError, "no space for a"):
-                talus_sections.on_two_cores(draw, ["a", "b"])
+            with unittest.mock.patch("os.sched_getaffinity", lambda process: set(range(cores))), self.assertRaisesRegex(OSError, "no space"):
+                on_two_cores([work, work])
 
 
 class Moved(Sheared):
