@@ -7,6 +7,7 @@ from matplotlib.tri import Triangulation
 
 import talus_style as style
 from talus_results import read_factor
+from talus_units import of_length, span
 
 BRIGHT = 0.97  # share of the soil that shears less than the end of the colour scale
 ARROWS = 22  # squares over the longer side of the soil, with an arrow each
@@ -50,7 +51,7 @@ def factor_lines(factor):
                      f"Upper bound{of}, psi = phi as limit equilibrium assumes: {in_words(factor['by_flow']['associated'])}. "
                      f"Lower estimate, strength of Davis (1968): {in_words(factor['by_flow']['davis'])}.")
     for number, mechanism in enumerate(factor["mechanisms"][1:], 2):
-        lines.append(f"Mechanism {number}, from x = {mechanism['low_m'][0]:.4g} to {mechanism['high_m'][0]:.4g} m, which moves "
+        lines.append(f"Mechanism {number}, from x = {span(mechanism['low_m'][0], mechanism['high_m'][0], 'm')}, which moves "
                      f"{100 * mechanism['share_of_critical_soil']:.0f} % of the soil of mechanism 1 too: "
                      f"{in_words(mechanism['factor_of_safety'])}.")
     if not factor["factor_of_safety"]["decided"]:
@@ -125,7 +126,8 @@ def draw_mechanism(results, factor, headline, path):
         axes.plot(*np.array(mechanism["slip_surface_m"]).T, color=style.INK if number == 1 else style.LINES[(number - 2) % len(style.LINES)],
                   lw=1.2, ls=(0, (4, 2)), label=label, path_effects=[Stroke(linewidth=3, foreground="white", alpha=0.7), Normal()])  # on a dark band
     axes.set_aspect("equal")
-    axes.set(xlabel="x [m]", ylabel="y [m]")
+    axes.set(xlabel=of_length("x"), ylabel=of_length("y"))
+    style.places(axes.xaxis), style.places(axes.yaxis)
     axes.set_title("arrows: the motion of the mechanism, whose size is free", loc="left", fontsize=7.5, color=style.SOFT)
     style.headline(figure, headline, results.title)
     axes.legend(loc="best")
@@ -153,7 +155,8 @@ def draw_displacement(factor, headline, title, path, height=np.inf):
     if any(t["outcome"] == "equilibrium" and t["displacement_m"] > TOO_FAR * height for t in factor["trials"]):
         axes.axhline(TOO_FAR * height, color=style.SOFT, lw=0.8)
         axes.set_title(f"above the line ({100 * TOO_FAR:g} % of the height of the soil) displacement has no meaning: the balance of forces alone counts", loc="left", fontsize=7.5, color=style.SOFT)
-    axes.set_xlabel("factor by which strength is divided"), axes.set_ylabel("largest displacement [m]")
+    axes.set_xlabel("factor by which strength is divided"), axes.set_ylabel(of_length("largest displacement"))
+    style.places(axes.yaxis)
     style.headline(figure, headline, title)
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=2, fontsize="small")  # lines at the factors would run through its words
     return style.save(figure, path)

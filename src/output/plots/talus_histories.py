@@ -148,11 +148,11 @@ def draw_ledger(history, quantity, lines, title, per, path, ramp=""):
 def plot_lines(axes, history, lines, unit, what, per, colour=None):
     """`per` is "/m" in plane strain, where forces, energies and masses are those of a metre of the slope."""
     largest = max(np.nanmax(np.abs(values)) for values in lines.values())
-    factor, shown = readable_unit(largest, unit)
+    factor, shown = readable_unit(largest, unit + per if unit in OF_ALL_SOIL else unit)
     for k, (name, values) in enumerate(lines.items()):
         axes.plot(history.time, factor * values, linewidth=1.5, color=colour or style.LINES[k % len(style.LINES)],
                   linestyle=("-", "--", ":")[k // len(style.LINES) % 3], label=words(name))
-    axes.set_ylabel(with_unit(what, shown + per if unit in OF_ALL_SOIL else shown))
+    axes.set_ylabel(with_unit(what, shown))
     axes.grid(axis="y", color=style.FAINT, linewidth=0.5)
     axes.set_axisbelow(True)
     axes.yaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 2.5, 5, 10]))

@@ -9,7 +9,7 @@ import talus_style as style
 from talus_histories import time_axis
 from talus_measures import failure
 from talus_moments import after, last_reset, since
-from talus_units import at_time, capital, readable_unit, with_unit, words
+from talus_units import at_time, capital, of_length, readable_unit, with_unit, words
 
 COUNT = 6  # times that a picture shows
 UPRIGHT = 0.2  # a line whose width is less than this share of its height is drawn over elevation, as inclinometers are
@@ -113,8 +113,10 @@ def draw_line(results, line, path, times):
         if frictional and row in stressed:
             show(axes[0, 1], where, line.columns["mobilised_friction_deg"][row], upright, color=colour, lw=1.0)
             mark_states(axes[0, 1], where, line, row, upright)
-    along = "elevation [m]" if upright else "distance along the line [m]"
+    along = of_length("elevation" if upright else "distance along the line")
     name(axes[0, 0], along, with_unit("size of level displacement" if upright else "displacement", unit), upright)
+    for panel in axes[0, :2]:
+        style.places(panel.yaxis if upright else panel.xaxis)
     if later[-1] and not mixed:
         axes[0, 0].set_title(f"since the end of stage {reset[1]}", loc="left", fontsize=7.5, color=style.SOFT)
     if frictional:

@@ -8,6 +8,7 @@ from matplotlib.transforms import offset_copy
 import talus_style as style
 from talus_ground import smoothed
 from talus_relief import between, without_flats
+from talus_units import length, of_length
 
 STATES = 5  # surfaces in the section, at most
 LAMPS = ((315, 0.6), (270, 0.2), (0, 0.2))  # azimuths of the light on a map and their shares: one alone leaves slopes along it without relief
@@ -99,15 +100,15 @@ def place_of_scale(soil, spacing, low, shown, length, inch, arrow=(1, 1)):
     return low + min((at for corner, at in corners.items() if corner != arrow), key=lambda at: covered(soil, spacing, at, np.add(at, [length, tall])))
 
 
-def ticks_of(axes, width, height):
+def ticks_of(axes, width, height, factor=1.0):
     """As many ticks as numbers with this many digits leave room for, none so near to an end that its number passes it; `width`, `height` of the map
-    [inch]."""
-    number = 0.085 * max(len(f"{value:.0f}") for value in (*axes.get_xlim(), *axes.get_ylim()))  # its length [inch]
+    [inch], `factor` of the unit of the numbers."""
+    number = 0.085 * max(len(f"{factor * value:.0f}") for value in (*axes.get_xlim(), *axes.get_ylim()))  # its length [inch]
     for axis, length, (low, high) in ((axes.xaxis, width, axes.get_xlim()), (axes.yaxis, height, axes.get_ylim())):
         beside = 0.5 * number / length * (high - low)
         first = int(np.clip(length / (1.4 * number + 0.2), 1, 8))
         for most in range(first, first + 3):  # two of them, if they do not touch
-            ticks = MaxNLocator(most, min_n_ticks=2).tick_values(low, high)
+            ticks = MaxNLocator(most, min_n_ticks=2).tick_values(factor * low, factor * high) / factor
             inside = ticks[(ticks >= low + beside) & (ticks <= high - beside)]
             if most == first or (len(inside) == 2 and inside[1] - inside[0] > 2.3 * beside):
                 axis.set_ticks(inside)
@@ -117,7 +118,8 @@ def ticks_of(axes, width, height):
 
 def draw_map(maps, path):
     """Hill-shaded ground before the slide with contours; thickness, outline and path of the slide upon it."""
-    ground, grid, origin = maps.ground, maps.grid, maps.axes.origin[:2]
+    ground, grid, origin, (factor, unit) = maps.ground, maps.grid, maps.axes.origin[:2], length()
+    of_places = (1.0, "m") if maps.axes.spacing else (factor, unit)  # coordinates of a terrain file are those of its projection
     size = np.array(grid.shape) * grid.spacing
     tall = np.clip(7.0 * size[1] / size[0], 2.0, 9.0)  # of the map, in inches
     wide = np.clip(tall * size[0] / size[1], 5.0, 7.0)
@@ -126,13 +128,13 @@ def draw_map(maps, path):
     before = smoothed_evenly(maps.before, grid.spacing / (2 * ground.cell))
     light = np.ma.masked_where(~ground.inside, shade(before, ground.cell))
     axes.imshow(light.T, cmap="gray", vmin=0, vmax=1, origin="lower", extent=extent(ground.low[:2], ground.cell, ground.shape, origin))
-    levels = MaxNLocator(12).tick_values(before.min(), before.max())
+    levels = MaxNLocator(12).tick_values(factor * before.min(), factor * before.max()) / factor
     level = np.ma.masked_where(~ground.inside, without_flats(before, levels, max(1, int(LEVEL * min(before.shape)))))
     lines = axes.contour(east, north, level.T, levels, colors=style.SOFT, linewidths=0.5)
     deposit = np.ma.masked_where(~maps.covered[-1], maps.thickness[-1])
-    image = axes.imshow(deposit.T, cmap=style.colours_of("thickness"), vmin=0, origin="lower", alpha=0.85, zorder=2,
+    image = axes.imshow(factor * deposit.T, cmap=style.colours_of("thickness"), vmin=0, origin="lower", alpha=0.85, zorder=2,
                         extent=extent(grid.low, grid.spacing, grid.shape, origin))
-    figure.colorbar(image, ax=axes, shrink=0.75, label=f"thickness at {maps.moment()} [m]")
+    figure.colorbar(image, ax=axes, shrink=0.75, label=f"thickness at {maps.moment()} [{unit}]")
     for rings, dashes in ((maps.rings(maps.covered[-1]), "-"), (maps.rings(maps.covered[0]), "--")):
         for ring in rings:
             axes.plot(*ring.T, color=style.INK, lw=1.0, ls=dashes, zorder=3)
@@ -143,27 +145,29 @@ def draw_map(maps, path):
     axes.plot([], [], color=style.INK, lw=1.0, ls="--", label="outline at the start")
     low, high = origin + grid.low, origin + grid.low + size
     shown = origin + [ground.low[:2], ground.high[:2]]  # the outermost cells of the grid reach beyond it
-    axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), xlabel=f"east [m]   {maps.axes.name[:60]}".rstrip(), ylabel="north [m]", aspect="equal")
-    ticks_of(axes, min(wide, tall * size[0] / size[1]), min(tall, wide * size[1] / size[0]))
+    axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), xlabel=f"east [{of_places[1]}]   {maps.reference()[:60]}".rstrip(), ylabel=f"north [{of_places[1]}]", aspect="equal")
+    ticks_of(axes, min(wide, tall * size[0] / size[1]), min(tall, wide * size[1] / size[0]), of_places[0])
     axes.ticklabel_format(useOffset=False, style="plain")
+    if of_places[0] != 1:
+        style.number_places(axes.xaxis), style.number_places(axes.yaxis)
     axes.tick_params(axis="y", labelrotation=90)
-    length = round_length(0.25 * size[0])
+    bar = round_length(0.25 * size[0] * factor) / factor
     inch = size[0] / min(wide, tall * size[0] / size[1])  # [m]
     soil = near(maps.covered[-1] | maps.covered[0], int(np.ceil(0.2 * inch / grid.spacing)))
     corner = np.array(corner_of_arrow(soil, grid.spacing, low, shown, inch))
-    at = place_of_scale(soil, grid.spacing, low, shown, length, inch, tuple(corner))
+    at = place_of_scale(soil, grid.spacing, low, shown, bar, inch, tuple(corner))
 
     def taken(place):
         """By the scale, the arrow to the north, and the soil at the start and at the end."""
-        scale = ((place > at - 0.3 * inch) & (place < at + [length + 0.3 * inch, 0.45 * inch])).all(axis=1)
+        scale = ((place > at - 0.3 * inch) & (place < at + [bar + 0.3 * inch, 0.45 * inch])).all(axis=1)
         arrow = (np.where(corner, shown[1] - place, place - shown[0]) < ARROW * inch).all(axis=1)
         column, row = np.clip(((place - low) / grid.spacing).astype(int), 0, np.array(grid.shape) - 1).T
         return scale | arrow | soil[column, row]
 
     if len(places := places_of_labels(lines, *shown, taken, 0.4 * inch)):
-        axes.clabel(lines, fontsize=6, fmt="%g", colors=style.INK, manual=[tuple(place) for place in places])
-    axes.plot([at[0], at[0] + length], [at[1]] * 2, color=style.INK, lw=3, solid_capstyle="butt", zorder=5)
-    axes.annotate(f"{length:g} m", (at[0] + length / 2, at[1]), (0, 4), textcoords="offset points", ha="center", fontsize=8, zorder=5,
+        axes.clabel(lines, fontsize=6, fmt=lambda level: f"{round(factor * level, 6):g}", colors=style.INK, manual=[tuple(place) for place in places])
+    axes.plot([at[0], at[0] + bar], [at[1]] * 2, color=style.INK, lw=3, solid_capstyle="butt", zorder=5)
+    axes.annotate(f"{factor * bar:g} {unit}", (at[0] + bar / 2, at[1]), (0, 4), textcoords="offset points", ha="center", fontsize=8, zorder=5,
                   bbox={"fc": "white", "ec": "none", "alpha": 0.7, "pad": 1})
     head, foot = (offset_copy(axes.transData, figure, -14 if corner[0] else 14, (0 if corner[1] else 57) + down, units="points") for down in (-20, -46))
     tip = shown[corner, [0, 1]]
@@ -223,7 +227,8 @@ def draw_section(maps, path):
     colours = plt.get_cmap("viridis")(np.linspace(0.75, 0.1, len(chosen)))
     for k, colour, line in zip(chosen, colours, lines[1:]):
         axes.plot(distance, np.where(with_ends(line > base + 1e-3 * maps.size), line, np.nan), color=colour, lw=1.1, label=f"surface at {maps.moment(k)}")
-    axes.set(xlabel="distance along the path of the slide [m]", ylabel="elevation [m]", aspect="equal", xlim=(0, distance[-1]), ylim=(base.min() - 0.05 * height, None))
+    axes.set(xlabel=of_length("distance along the path of the slide"), ylabel=of_length("elevation"), aspect="equal", xlim=(0, distance[-1]), ylim=(base.min() - 0.05 * height, None))
     axes.ticklabel_format(useOffset=False, style="plain")
+    style.places(axes.xaxis), style.places(axes.yaxis)
     axes.legend(loc="lower left", bbox_to_anchor=(0, 1.01), ncols=3, fontsize=8)
     return style.save(figure, path)

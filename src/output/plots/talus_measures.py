@@ -8,6 +8,7 @@ import typing
 
 import numpy as np
 
+from talus_deposit import Deposit
 from talus_results import Thickness, largest_displacement, read_factor, sliding, spacing
 
 MEASURES = {}
@@ -209,7 +210,6 @@ def deposit(results):
     """The numbers of the maps of a run in 3D as `talus maps` writes them without options; None in plane strain, and where nothing slid far enough."""
     if results.snapshots[-1].position().shape[1] != 3 or not len(results.mesh()[1]) or "velocity" not in results.snapshots[-1]:
         return None
-    from talus_maps import Deposit  # GDAL is loaded where it is needed
     try:
         return Deposit(results).numbers()
     except ValueError:

@@ -15,7 +15,7 @@ from matplotlib.collections import LineCollection, PolyCollection
 from talus_modelled import WATER, Model, notes, outline, stage_rows
 from talus_perspective import Views
 from talus_symbols import SYMBOL, WHITE, Symbols, chains, dimension, keep_apart, label, movable, named_points
-from talus_units import length, use
+from talus_units import of_length, use
 
 WIDTH, MARGIN, LINE = 12.0, 0.45, 0.19  # of the picture, its edges and a line of its text [inch]
 
@@ -128,7 +128,7 @@ def section(model):
     sheet = Sheet(model, height + scale - 0.2)
     axes = sheet.axes((WIDTH - width + scale) / 2, sheet.view_top, width, height)
     axes.set(xlim=(low[0] - pad * metres, high[0] + pad * metres), ylim=(low[1] - pad * metres, high[1] + above * metres), aspect="equal",
-             xlabel=f"x [{length()[1]}]", ylabel=f"y [{length()[1]}]")
+             xlabel=of_length("x"), ylabel=of_length("y"))
     style.places(axes.xaxis, 8), style.places(axes.yaxis, 8)
     for body in range(len(model.bodies)):
         cells = model.corners[model.body == body]

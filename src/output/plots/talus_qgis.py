@@ -5,6 +5,7 @@ from matplotlib.colors import to_hex
 from osgeo import ogr
 
 import talus_style as style
+from talus_units import in_use
 
 STEPS = 9
 FIELDS = {"thickness": "thickness", "largest_thickness": "thickness", "largest_speed": "velocity"}  # whose colours the pictures have
@@ -20,9 +21,9 @@ def of_grid(name, values, unit):
     high = high or 1.0
     signed = bool((known < -0.02 * high).any())
     low = -high if signed else 0.0
-    colours = style.colours_of(FIELDS.get(name, name), signed)
+    colours, (factor, written) = style.colours_of(FIELDS.get(name, name), signed), in_use(unit)
     items = "".join(f'<item value="{low + share * (high - low):.6g}" color="{to_hex(colours(share))}" alpha="{0 if share == 0 and not signed and "thickness" in name else 255}" '
-                    f'label="{low + share * (high - low):.3g} {unit}"/>' for share in np.linspace(0, 1, STEPS))
+                    f'label="{factor * (low + share * (high - low)):.3g} {written}"/>' for share in np.linspace(0, 1, STEPS))
     return ('<!DOCTYPE qgis>\n<qgis version="3.22"><pipe>'
             f'<rasterrenderer type="singlebandpseudocolor" band="1" opacity="1" classificationMin="{low:.6g}" classificationMax="{high:.6g}">'
             f'<rastershader><colorrampshader colorRampType="INTERPOLATED" classificationMode="2" clip="0" minimumValue="{low:.6g}" maximumValue="{high:.6g}">{items}'

@@ -18,7 +18,7 @@ from talus_moments import moved_before
 from talus_outcomes import in_words, outcome
 from talus_play import ROWS
 from talus_results import NOT_ENDED, SLOW, largest_displacement, read_factor, sliding, still_moving
-from talus_units import Keys, at_time, capital, readable_unit, text_of, words
+from talus_units import Keys, at_time, brief, capital, text_of, thousands, words
 from talus_workbook import write_workbook
 
 LOG_LINES = 25
@@ -153,8 +153,8 @@ def key_results(results, model=None):
     if "displacement" in last and len(last.position()):
         vector = last.column("displacement").values
         level, rise = level_and_upright(vector, results.up_axis())
-        parts = f"{quantity(level, 'm')} level, {quantity(rise, 'm')} up or down"
-        found.append(("Largest displacement", quantity(largest_displacement(last), "m"), f"of 99.9 % of the mass; of any particle {parts}{without}" + f"; {when}" * (factor is not None)))
+        parts = f"{brief(level, 'm')} level, {brief(rise, 'm')} up or down"
+        found.append(("Largest displacement", brief(largest_displacement(last), "m"), f"of 99.9 % of the mass; of any particle {parts}{without}" + f"; {when}" * (factor is not None)))
         if "volume" in last:
             came_to = outcome(results)
             if lost:
@@ -163,17 +163,17 @@ def key_results(results, model=None):
                 found.append((f"State {when}", came_to["state"], in_words(came_to, came_to["cell_m"]) + motion_at_end(last)))
             volume = came_to["volume_of_slide_m3"]
             note = "no soil slides" if volume is None else "moved more than a tenth of the largest"
-            found.append(("Sliding volume", quantity(volume or 0.0, results.per_metre("m³")), note + without))
+            found.append(("Sliding volume", brief(volume or 0.0, results.per_metre("m³")), note + without))
             if came_to.get("travel_distance_m"):
                 found += run_out(came_to)
     depth = flow(results) if "displacement" in last and "volume" in last else None
     if depth:
         typical, most, cell = depth
         thin = ": a flow that is not as deep as a cell is not resolved; take smaller cells on its way" if typical < cell else ""
-        found.append(("Depth of the flow", quantity(typical, "m"), f"at most {quantity(most, 'm')}; median where it left its outline at the start; cells there measure {quantity(cell, 'm')}{thin}"))
+        found.append(("Depth of the flow", brief(typical, "m"), f"at most {brief(most, 'm')}; median where it left its outline at the start; cells there measure {brief(cell, 'm')}{thin}"))
     speed = top_speed(results)
     if speed:
-        found.append(("Largest speed", quantity(speed[0], "m/s"), f"{speed[2]}, {at_time(speed[1], last.time)}"))
+        found.append(("Largest speed", brief(speed[0], "m/s"), f"{speed[2]}, {at_time(speed[1], last.time)}"))
     found += bases(results)
     if "plastic_strain" in last and np.isfinite(last.scalar("plastic_strain")[0]).any():  # elastic soil has none
         found.append(("Largest plastic strain", f"{known(last, 'plastic_strain').max():.3g}", when))
@@ -181,7 +181,7 @@ def key_results(results, model=None):
     gone = results.history.columns.get("escaped_mass_kg", 0 * mass) if mass is not None else None
     if mass is not None and len(mass) and mass[0]:
         lost = mass[-1] + gone[-1] - mass[0]
-        end = quantity(mass[-1] / 1e3, results.per_metre("t"))
+        end = brief(mass[-1] / 1e3, results.per_metre("t"))
         closed = abs(lost) <= ROUNDED * (mass[0] + mass[-1] + gone[-1])
         error = f"{lost:+.1e} {results.per_metre('kg')}"
         share = "" if closed else f"; {abs(lost) / mass[0]:.1e} of the mass at the start has {'appeared' if lost > 0 else 'vanished'}"
@@ -191,10 +191,10 @@ def key_results(results, model=None):
 
 def run_out(came_to):
     """[(what, number, note)] of how far a slide went."""
-    found = [("Travel distance L", quantity(came_to["travel_distance_m"], "m"), "level, from the crown at the start to the front at the end"),
-             ("Run-out from the toe", quantity(came_to["run_out_from_toe_m"], "m"), "front at the end beyond that at the start"),
-             ("Angle of reach", f"{came_to['angle_of_reach_deg']:.1f}°", f"H/L = {came_to['fall_height_m'] / came_to['travel_distance_m']:.3g}, fall H = {quantity(came_to['fall_height_m'], 'm')}")]
-    return found + ([("Area of the deposit", quantity(came_to["area_m2"], "m²"), "as maps outline it")] if came_to["area_m2"] else [])
+    found = [("Travel distance L", brief(came_to["travel_distance_m"], "m"), "level, from the crown at the start to the front at the end"),
+             ("Run-out from the toe", brief(came_to["run_out_from_toe_m"], "m"), "front at the end beyond that at the start"),
+             ("Angle of reach", f"{came_to['angle_of_reach_deg']:.1f}°", f"H/L = {came_to['fall_height_m'] / came_to['travel_distance_m']:.3g}, fall H = {brief(came_to['fall_height_m'], 'm')}")]
+    return found + ([("Area of the deposit", brief(came_to["area_m2"], "m²"), "as maps outline it")] if came_to["area_m2"] else [])
 
 
 def doubts(results):
@@ -202,10 +202,10 @@ def doubts(results):
     last, found = results.snapshots[-1], []
     moved = moved_before(results)
     if moved:
-        found.append(("Moved before the start", quantity(moved[0], "m"), f"set to zero at the end of stage {moved[1]}: more than elastic soil settles, see the warnings"))
+        found.append(("Moved before the start", brief(moved[0], "m"), f"set to zero at the end of stage {moved[1]}: more than elastic soil settles, see the warnings"))
     if results.escaped and len(results.escaped.time):
         note = f"{thousands(len(results.escaped.time))} particles, from {at_time(results.escaped.time[0], last.time)} on{ways_out(results.escaped)}"
-        found.append(("Left the mesh", quantity(results.escaped.columns["mass_kg"].sum() / 1e3, results.per_metre("t")), note))
+        found.append(("Left the mesh", brief(results.escaped.columns["mass_kg"].sum() / 1e3, results.per_metre("t")), note))
     if gone := points_without_soil(results.history):
         found.append(("Points without soil", ", ".join(map(words, gone)), "at the end: what stood there has left the mesh, or no stage has added it"))
     return found
@@ -236,7 +236,7 @@ def bounds(factor):
 def motion_at_end(last):
     """Whether the soil that slid has come to rest, in words; empty if it has."""
     moving = still_moving(last, last.ids()[sliding(last)])
-    return f"; still moving: {100 * moving[0]:.3g} % of what slid is faster than {quantity(SLOW, 'm/s')}, at up to {quantity(moving[1], 'm/s')}" if moving else ""
+    return f"; still moving: {100 * moving[0]:.3g} % of what slid is faster than {brief(SLOW, 'm/s')}, at up to {brief(moving[1], 'm/s')}" if moving else ""
 
 
 def bases(results):
@@ -252,7 +252,7 @@ def bases(results):
         if tan_phi is not None:
             notes.append(f"tan φ = {tan_phi:.3g}")
         if clearance is not None and clearance[-1] > 0:
-            notes.append(f"lowest particles {quantity(clearance[-1], 'm')} above it")
+            notes.append(f"lowest particles {brief(clearance[-1], 'm')} above it")
         found.append((f"Friction on {words(name)} at the end", f"{friction[-1]:.3g}", "; ".join(notes)))
     return found
 
@@ -282,15 +282,6 @@ def top_speed(results):
                 when = float(results.history.time[np.nanargmax(values)])
                 best = max(best or (0,), (float(np.nanmax(values)), when, f"at {words(name)}"))
     return best if best and best[0] > 0 else None
-
-
-def quantity(value, unit):
-    factor, unit = readable_unit(abs(value), unit)
-    return f"{factor * value:.3g} {unit}" if abs(factor * value) < 1000 else f"{thousands(round(factor * value))} {unit}"
-
-
-def thousands(number):
-    return f"{number:,}".replace(",", "\u202f")
 
 
 def cards(numbers):

@@ -229,7 +229,7 @@ class Painter:
                     self._panel(axes, snapshot, field, k, colours, named_points, len(snapshots) == 1)
                     if named_points:
                         keep_apart(axes)
-                    axes.set_title(titles[n, k], loc="left", pad=5)
+                    axes.set_title(titles[n, k], loc="left", pad=5, y=1.0)  # which need not be found
                     if isinstance(self.views[k], Oblique):
                         continue
                     if n + columns >= len(snapshots) and row is rows[-1]:

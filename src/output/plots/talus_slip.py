@@ -7,6 +7,7 @@ import numpy as np
 
 from talus_measures import at, failure
 from talus_sections import Painter
+from talus_units import quantity, span
 from talus_views import spacing_of
 
 LEAST = 0.2  # of the largest plastic strain: soil with less is no part of the surface
@@ -142,7 +143,7 @@ def said_of_ends(results, line, place, snapshot):
     deep = deep_ends(results, line, place)
     if not deep:
         return ""
-    ends = " and ".join(f"{depth:.2g} m below the ground on the {side}" for side, depth in deep.items())
+    ends = " and ".join(f"{quantity(depth, 'm', '.2g')} below the ground on the {side}" for side, depth in deep.items())
     band = f"soil with more than {LEAST:g} of the largest plastic strain"
     if not buried_ends(line, place):
         return f"the line ends inside the soil, {ends}: {band} ends there"
@@ -170,7 +171,7 @@ def said_of_line(results, line, place, strain):
 def spans(line, marked):
     """Where RUN points of the line or more in a row are marked, in words."""
     edges = np.flatnonzero(np.diff([0, *map(int, marked), 0]))
-    return " and ".join(f"from x = {line[a, 0]:.4g} to {line[b - 1, 0]:.4g} m" for a, b in zip(edges[::2], edges[1::2]) if b - a >= RUN)
+    return " and ".join(f"from x = {span(line[a, 0], line[b - 1, 0], 'm')}" for a, b in zip(edges[::2], edges[1::2]) if b - a >= RUN)
 
 
 def smoothed(line):

@@ -28,7 +28,7 @@ from talus_results import History, Results, read_events
 from talus_statistics import ORDERS, clopper_pearson, extrapolate, order_of, rest_of, settles
 from talus_style import plt
 from talus_table import folded, lines_of
-from talus_units import readable_unit, shown, with_unit, words
+from talus_units import in_use, of_column, quantity, readable_unit, use, with_unit, words
 from talus_workbook import write_workbook
 
 SHOWN = ("factor_of_safety", "load_time_of_failure_s", "travel_distance_m", "largest_displacement_m")  # of a study
@@ -37,7 +37,6 @@ TO_A_CELL = ("travel_distance_m", "depth_of_slide_m")  # rear, front and slip su
 OF_POINTS = ("_displacement_m", "_largest_speed_m_s")  # endings
 MOST = 5  # named points that charts and the table show
 LEFT_OUT = ("cell_m", "deepest_at_x_m", "run_out_from_toe_m", "fall_height_m", "angle_of_reach_deg", "area_m2", "value", "processor_s", "wall_s", "escaped_mass_kg", "escaped_share")  # numbers that are no outcomes
-UNIT = re.compile("_(kg_m_s|m_s2|m3_s|m_s|m3|m2|m|J|Pa|N|kg|K|s|deg)$")  # by which names of outcomes end
 MET, NOT_MET, UNKNOWN = 1, 0, -1
 MANY = 6  # cases: more have no pictures of their fits
 # marker, how it is filled, and what it says
@@ -58,12 +57,22 @@ def asked_of(measure):
     return column, float(time) if time else None, measure.startswith("max:")
 
 
-def named(outcome, in_plane=False):
-    """An outcome or a measure in words, with its unit: 'max:crest_displacement_m' is 'largest crest displacement [m]'."""
+def spoken(outcome, in_plane=False):
+    """An outcome or a measure in words, its SI unit, and its time in words."""
     column, time, largest = asked_of(outcome)
-    unit = match[1].replace("_s", "/s").replace("_", " ") if (match := UNIT.search(column)) else ""
-    text = with_unit(words(UNIT.sub("", column)), shown(unit) + "/m" * (in_plane and unit == "m3"))
-    return "largest " * largest + text + (f" at {time:g} s" if time is not None else "")
+    text, unit = of_column(column)
+    return "largest " * largest + text, unit + "/m" * (in_plane and unit == "m³"), f" at {time:g} s" if time is not None else ""
+
+
+def named(outcome, in_plane=False):
+    """The same with the unit in which charts and tables write it: 'max:crest_displacement_m' is 'largest crest displacement [m]'."""
+    text, unit, when = spoken(outcome, in_plane)
+    return with_unit(text, in_use(unit)[1]) + when
+
+
+def factor_of(outcome, in_plane=False):
+    """From SI to that unit."""
+    return in_use(spoken(outcome, in_plane)[1])[0]
 
 
 def measured(history, folder, measure):
@@ -111,6 +120,7 @@ class Runs:
         self.folder, self.preset, self.measures = folder, design["preset"], design["measures"]
         self.folders = [folder / run["folder"] for run in design["runs"] if not run["failure"]]
         known = next((Results(one) for one in self.folders if (one / "run.h5").exists()), None)
+        use(known.scene if known else {})
         self.title = design.get("title") or (known.title if known else "")
         self.in_plane = known is not None and known.per_metre("") == "/m"
         cell = max((cell_size(Results(one)) for one in self.folders), default=None) if self.preset == "converge" else None
@@ -144,11 +154,12 @@ class Runs:
         return lines + [f"warning in {one['runs']} of {len(self.rows)} runs, first in {one['first_run']}: {one['warning']}" for one in self.warnings()]
 
 
-def table(rows, columns, in_plane=False, width=None):
-    """Lines of a table of runs: their `line` and value, and `columns` {outcome: format}; a run that broke off has its reason."""
+def table(rows, columns, in_plane=False, width=None, like=None):
+    """Lines of a table of runs: their `line` and value, and `columns` {outcome: format}; a run that broke off has its reason. Columns have the units of
+    those that they are `like`."""
     def text(row, column, form):
         value = row.get(column)
-        return "-" if value is None else format(value, form) if isinstance(value, float) else str(value)
+        return "-" if value is None else format(value * factor_of((like or {}).get(column, column), in_plane), form) if isinstance(value, float) else str(value)
     value = words(with_unit(rows[0]["key"], rows[0]["unit"]).rpartition(".")[2]) if len({row["key"] for row in rows}) == 1 else "value"
     lost = losses(rows)
     texts = [[row["line"], written(row["value"])] + ([f"broke off: {row['failure']}"] if row["failure"] else
@@ -175,24 +186,25 @@ def charts(path, what, title, blocks, columns=3, size=(3.9, 3.1)):
     return style.save(figure, path)
 
 
-def against(key, label, rows, outcomes, title, lines, joined=True, limits=(), log=False):
+def against(key, label, rows, outcomes, title, lines, joined=True, limits=(), log=False, factor=1.0):
     """A panel: outcomes {name: column} of runs against their `key`, a colour for each outcome or else for each of the `lines` to which runs belong, `joined` or
-    not, with a mark for what came of each run. `limits` are values to see; `log` is for an ordinate of powers of ten."""
+    not, with a mark for what came of each run. `limits` are values to see; `log` is for an ordinate of powers of ten; `factor` is that of the unit in the `title`."""
     values = list(dict.fromkeys(row[key] for row in rows))
     numeric = all(isinstance(value, (int, float)) for value in values)
     at = {value: value if numeric else k for k, value in enumerate(values)}
     several = len(outcomes) > 1
 
     def draw(axes, own, column, colour, **look):
-        known = sorted((at[row[key]], float(row[column])) for row in own if row.get(column) is not None)
+        known = sorted((at[row[key]], factor * row[column]) for row in own if row.get(column) is not None)
         if known:
             axes.plot(*np.transpose(known), color=colour, lw=1.1, **(look if joined else look | {"ls": "", "marker": "o", "ms": 4}))
         marks = {}
         for row in own:
             late = column == "load_time_of_failure_s" and row.get(column) is None
-            state, y = ("broke off", 0) if row["failure"] else ("never", 1) if late else (row.get("state", ""), row.get(column))
+            value = row.get(column)
+            state, y = ("broke off", 0) if row["failure"] else ("never", 1) if late else (row.get("state", ""), None if value is None else factor * value)
             if y is not None:
-                marks.setdefault(state, []).append((at[row[key]], float(y)))
+                marks.setdefault(state, []).append((at[row[key]], y))
         for state, points in marks.items():
             shape, fill, said = MARKS[state]
             axes.plot(*np.transpose(points), shape, color=colour, ms=4.5, fillstyle=fill, mfc="white" if fill == "none" else None, markerfacecoloralt="white", label=said,
@@ -205,7 +217,7 @@ def against(key, label, rows, outcomes, title, lines, joined=True, limits=(), lo
                 draw(axes, [row for row in rows if row.get("line", "") == line], column, style.LINES[(k if several else n) % len(style.LINES)],
                      ls=("-", "--", ":", "-.")[n % 4 if several else 0], label=", ".join(filter(None, (name, line if len(lines) > 1 else ""))) or None)
         for limit in limits:
-            axes.axhline(limit, color=style.INK, lw=0.8, ls=":")
+            axes.axhline(factor * limit, color=style.INK, lw=0.8, ls=":")
         axes.set(xlabel=textwrap.fill(label, 38, break_on_hyphens=False), ylabel=textwrap.fill(title, 34), yscale="log" if log else "linear")
         if not numeric:
             axes.set_xticks(list(at.values()), [textwrap.fill(written(value), 14) for value in values])
@@ -286,15 +298,16 @@ def tornado(fits, in_plane):
     drawn = []
 
     def panel(fit, axes):
+        factor = factor_of(fit["outcome"], in_plane)
         drawn.append(axes)
         if axes is not drawn[0]:
             axes.sharex(drawn[0])
         for k, bar in enumerate(fit["bars"]):
             labels = ("variable at the 10 % quantile of these runs", "at their 90 % quantile") if "quantiles" in bar else ("variable at its least value", "at its largest value")
             for end, colour, label in zip(("low", "high"), style.LINES, labels):
-                axes.barh(k, bar[end] - fit["mean"], left=fit["mean"], height=0.62, color=colour, label=label)
+                axes.barh(k, factor * (bar[end] - fit["mean"]), left=factor * fit["mean"], height=0.62, color=colour, label=label)
         if fit["mean"] is not None:
-            axes.axvline(fit["mean"], color=style.INK, lw=0.8)
+            axes.axvline(factor * fit["mean"], color=style.INK, lw=0.8)
         ends = [bar.get("quantiles") or bar["ends"] for bar in fit["bars"]]
         axes.set_yticks(range(len(ends)), [f"{words(bar['variable'])}\n{low:.3g} to {high:.3g} {bar['unit']}".rstrip() for bar, (low, high) in zip(fit["bars"], ends)])
         axes.set_xlabel(textwrap.fill(named(fit["outcome"], in_plane), 52))
@@ -305,12 +318,13 @@ def tornado(fits, in_plane):
 
 def exceedance(cases, outcome, criteria, confidence, in_plane):
     """A panel: probability that an outcome is larger than a value, with its interval, a curve per case."""
-    every = [float(row[outcome]) for rows in cases.values() for row in rows if row.get(outcome) is not None]
+    factor = factor_of(outcome, in_plane)
+    every = [factor * row[outcome] for rows in cases.values() for row in rows if row.get(outcome) is not None]
     ends = min(every) - 0.03 * np.ptp(every), max(every) + 0.03 * np.ptp(every)
 
     def panel(axes):
         for colour, (case, rows) in zip(np.resize(style.LINES, len(cases)), cases.items()):
-            values = np.sort([float(row[outcome]) for row in rows if row.get(outcome) is not None])
+            values = np.sort([factor * row[outcome] for row in rows if row.get(outcome) is not None])
             n = len(values)
             if n == 0:
                 continue
@@ -321,7 +335,7 @@ def exceedance(cases, outcome, criteria, confidence, in_plane):
             runs = f"{n} runs" if n == len(rows) else f"the {n} of {len(rows)} runs with a value"
             axes.step(x, above / n, where="post", lw=1.3, color=colour, label=": ".join(filter(None, (case, runs))))
         for criterion in (one for one in criteria if one["outcome"] == outcome):
-            axes.axvline(criterion["limit"], color=style.INK, lw=0.8, ls=":", label=words(criterion["name"]))
+            axes.axvline(factor * criterion["limit"], color=style.INK, lw=0.8, ls=":", label=words(criterion["name"]))
         axes.set(xlabel=named(outcome, in_plane), ylabel="probability of a larger value", ylim=(0, 1.02))
     return panel
 
@@ -348,7 +362,7 @@ def study(runs, design):
         pictures["tornado"] = "What decides", [tornado(of, runs.in_plane) for of in fits], 3, size
     if vary:
         blocks = [[against(v["name"], with_unit(words(v["name"]), v["unit"]), rows, {"": outcome}, named(outcome, runs.in_plane), list(cases), False,
-                           [c["limit"] for c in criteria if c["outcome"] == outcome]) for v in variables] for outcome in vary]
+                           [c["limit"] for c in criteria if c["outcome"] == outcome], factor=factor_of(outcome, runs.in_plane)) for v in variables] for outcome in vary]
         pictures["scatter"] = "Outcomes against the variables", blocks, len(variables), (2.9, 2.7)
     if curves and sampled:
         pictures["exceedance"] = "Probability of exceedance", [[exceedance(cases, outcome, criteria, confidence, runs.in_plane) for outcome in curves]]
@@ -384,8 +398,8 @@ def outcomes(runs, _):
     rows, lines = runs.rows, lines_in(runs.rows)
     columns = {"state": ""} | {column: ".4g" for of in charted(rows).values() for column in of.values()}
     parts = [[row for row in rows if row["key"] == key] for key in dict.fromkeys(row["key"] for row in rows)]
-    blocks = [[against("value", with_unit(part[0]["key"], part[0]["unit"]), part, of, title, lines, limits=[0]) for title, of in charted(part, runs.in_plane).items()]
-              for part in parts]
+    blocks = [[against("value", with_unit(part[0]["key"], part[0]["unit"]), part, of, title, lines, limits=[0], factor=factor_of(next(iter(of.values())), runs.in_plane))
+               for title, of in charted(part, runs.in_plane).items()] for part in parts]
     keys = ", ".join(filter(None, (words(part[0]["key"].rpartition(".")[2]) for part in parts)))
     pictures = {"outcomes": (f"Outcomes against {keys or 'the series'}", [*filter(None, blocks)])} if any(blocks) else {}
     return table(rows, columns, runs.in_plane), {}, pictures, len(runs.ended) < len(rows)
@@ -401,22 +415,23 @@ def reference_of(rows, measure):
 
 def chart_of_errors(rows, reference):
     """Error against processor time and against the refined key, and the values themselves; each key that some series refine has its own panels."""
-    measure, uncertainty, text = reference["measure"], reference["uncertainty"], named(reference["measure"])
+    measure, text, factor = reference["measure"], named(reference["measure"]), factor_of(reference["measure"])
+    uncertainty = factor * reference["uncertainty"]
     known = [row for row in rows if not row["failure"] and row[measure] is not None]
     lines, errors = list(dict.fromkeys(row["line"] for row in known)), [row for row in known if row["error"]]
-    cost = against("processor_s", "processor time [s]", errors, {"": "error"}, "error of " + text, lines, log=True)
+    cost = against("processor_s", "processor time [s]", errors, {"": "error"}, "error of " + text, lines, log=True, factor=factor)
 
     def costs(axes):
         cost(axes)
-        if best := sorted((row["processor_s"], row["error"]) for row in errors if row["pareto"]):
+        if best := sorted((row["processor_s"], factor * row["error"]) for row in errors if row["pareto"]):
             axes.step(*np.transpose(best), where="post", color=style.INK, lw=0.8, ls=":", label="Pareto front")
         if 0 < uncertainty < math.inf:  # as far down as the errors go
             axes.axhspan(min(axes.get_ylim()[0], uncertainty / 2), uncertainty, color=style.FAINT, alpha=0.4, label="reference uncertain")
     blocks = []
     for key, unit in dict.fromkeys((row["key"], row["unit"]) for row in errors):
         blocks.append([None if blocks else costs,
-                       against("value", with_unit(key, unit), [row for row in errors if row["key"] == key], {"": "error"}, "error of " + text, lines, log=True),
-                       against("value", with_unit(key, unit), [row for row in known if row["key"] == key], {"": measure}, text, lines, limits=[reference["value"]])])
+                       against("value", with_unit(key, unit), [row for row in errors if row["key"] == key], {"": "error"}, "error of " + text, lines, log=True, factor=factor),
+                       against("value", with_unit(key, unit), [row for row in known if row["key"] == key], {"": measure}, text, lines, limits=[reference["value"]], factor=factor)])
     return f"Error of {text.partition(' [')[0]} against cost and refinement", blocks, 3, (3.5, 3.4)
 
 
@@ -440,7 +455,7 @@ def errors(runs, design):
         row["pareto"] = int(row in known and not any(other["processor_s"] < row["processor_s"] and other["error"] < row["error"] for other in known))
     reference = {"measure": measure, "value": value, "uncertainty": uncertainty, "origin": origin}
     columns = {measure: ".8g", "error": ".2e", "processor_s": ".3g", "steps": "", "evaluations": "", "rejections": ""}
-    lines = [f"{measure}; reference {value:.8g} +- {uncertainty:.2g} ({origin})", "", *table(rows, columns)]
+    lines = [f"{measure}; reference {value:.8g} +- {uncertainty:.2g} ({origin})", "", *table(rows, columns, like={"error": measure})]
     status, runs.rows = len(runs.ended) < len(runs.rows), rows
     return lines, {"reference": reference}, {"errors": chart_of_errors(rows, reference)} if any(row["error"] for row in known) else {}, status
 
@@ -466,9 +481,9 @@ def percent(difference, values):
 
 def said_of_quantity(one, rows, thing, in_plane):
     """A sentence on what refinement does to a quantity."""
-    name, _, unit = named(one["quantity"], in_plane).partition(" [")
+    name, unit, _ = spoken(one["quantity"], in_plane)
     values = [value for value in one["values"] if value is not None]
-    factor, unit = readable_unit(max(map(abs, values)), unit.rstrip("]"))
+    factor, unit = readable_unit(max(map(abs, values)), unit)
     text = f"The {name} is {factor * min(values):.3g} to {factor * max(values):.3g} {unit}, {percent(max(values) - min(values), values)} apart"
     if one["state"] == "missing":
         text += f" and missing with {', '.join(refined(row) for row, value in zip(rows, one['values']) if value is None)}"
@@ -498,7 +513,7 @@ def judge(rows, by, within, in_plane=False):
             verdict = settles(sizes, values, within, cell if key in TO_A_CELL else 0.0)
             order = order_of(sizes[-3:], values[-3:], ORDERS) if verdict == "settles" else None
             of_cell = key in TO_A_CELL and cell > within * abs(values[-1] or 0)
-            judged.append({"quantity": key, "values": values, "state": verdict, "allowed": f"one cell of {cell:.2g} m" if of_cell else f"{100 * within:g} %", "order": order, "limit": order and values[-1] + rest_of(sizes, values, order)})
+            judged.append({"quantity": key, "values": values, "state": verdict, "allowed": f"one cell of {quantity(cell, 'm', '.2g')}" if of_cell else f"{100 * within:g} %", "order": order, "limit": order and values[-1] + rest_of(sizes, values, order)})
             sentences.append(said_of_quantity(judged[-1], rows, thing, in_plane))
             decides |= verdict not in ("equal", "settles", "near")
     return sentences + [f"Until another {thing} no longer changes these numbers, their scatter is their error."] * decides, decides, judged

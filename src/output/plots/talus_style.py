@@ -23,7 +23,7 @@ RESOLUTION = 120  # dots per inch
 PACKED = 4  # of 9: how thoroughly pictures are packed
 
 plt.rcParams.update({
-    "font.family": "DejaVu Sans", "font.size": 9, "axes.titlesize": 9.5, "axes.titley": 1.0, "axes.labelsize": 9,
+    "font.family": "DejaVu Sans", "font.size": 9, "axes.titlesize": 9.5, "axes.labelsize": 9,
     "text.color": INK, "axes.labelcolor": INK, "axes.edgecolor": SOFT, "xtick.color": SOFT, "ytick.color": SOFT,
     "xtick.labelcolor": INK, "ytick.labelcolor": INK, "xtick.labelsize": 8, "ytick.labelsize": 8,
     "axes.linewidth": 0.7, "xtick.major.width": 0.7, "ytick.major.width": 0.7,
@@ -75,11 +75,17 @@ class Places(MaxNLocator):
         return super().tick_values(low * length()[0], high * length()[0]) / length()[0]
 
 
-def places(axis, most):
-    """Lets an axis of places have at most so many intervals, and numbers in the unit of the run."""
-    axis.set_major_locator(Places(most, steps=[1, 2, 5, 10]))
+def places(axis, most=None):
+    """Lets an axis of places [m] have numbers in the unit of the run, and at most so many intervals."""
+    if most or length()[0] != 1:
+        axis.set_major_locator(Places(most or 8, steps=[1, 2, 5, 10]))
+    number_places(axis)
+
+
+def number_places(axis):
+    """Numbers of places [m] in the unit of the run."""
     if length()[0] != 1:
-        axis.set_major_formatter(FuncFormatter(lambda at, _: f"{round(at * length()[0], 6):g}"))
+        axis.set_major_formatter(FuncFormatter(lambda at, _: f"{round(at * length()[0], 6):.12g}"))
 
 
 class LogTicks(Locator):

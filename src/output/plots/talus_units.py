@@ -10,10 +10,11 @@ DAY = 86400.0  # [s]
 TIMES = ((DAY, DAY, "d"), (3600, 3600, "h"), (120, 60, "min"))  # from so many seconds on
 # of US practice: factor from SI, unit, and from which number on the next larger one is used
 FOOT, POUND = 0.3048, 4.4482216152605
-US = {"m": ((1 / FOOT, "ft"),), "m/s": ((1 / FOOT, "ft/s"),), "m/s2": ((1 / FOOT, "ft/s2"),), "m/s²": ((1 / FOOT, "ft/s²"),), "m²": ((FOOT**-2, "ft²"),), "m³": ((FOOT**-3, "ft³"),),
-      "m³/m": ((FOOT**-2, "ft³/ft"),), "Pa": ((FOOT**2 / POUND, "psf"), (FOOT**2 / POUND / 1e3, "ksf")), "N": ((1 / POUND, "lbf"), (1e-3 / POUND, "kip")),
-      "J": ((1 / (POUND * FOOT), "ft·lbf"), (1e-3 / (POUND * FOOT), "ft·kip")), "kg/m3": ((9.80665 * FOOT**3 / POUND, "pcf"),), "N/m3": ((FOOT**3 / POUND, "pcf"),),
-      "kg": ((9.80665 / POUND, "lb"),), "t": ((9806.65 / POUND / 1e3, "kip"),), "t/m": ((9806.65 / POUND / 1e3 * FOOT, "kip/ft"),), "kg/m": ((9.80665 / POUND * FOOT, "lb/ft"),)}
+US = {"m": ((1 / FOOT, "ft"),), "m/s": ((1 / FOOT, "ft/s"),), "m/s²": ((1 / FOOT, "ft/s²"),), "m²": ((FOOT**-2, "ft²"),), "m³": ((FOOT**-3, "ft³"),),
+      "m³/s": ((FOOT**-3, "ft³/s"),), "Pa": ((FOOT**2 / POUND, "psf"), (FOOT**2 / POUND / 1e3, "ksf")), "N": ((1 / POUND, "lbf"), (1e-3 / POUND, "kip")),
+      "J": ((1 / (POUND * FOOT), "ft·lbf"), (1e-3 / (POUND * FOOT), "ft·kip")), "W": ((1 / (POUND * FOOT), "ft·lbf/s"),), "kg/m³": ((9.80665 * FOOT**3 / POUND, "pcf"),),
+      "N/m³": ((FOOT**3 / POUND, "pcf"),), "kg": ((9.80665 / POUND, "lb"),), "t": ((9806.65 / POUND / 1e3, "kip"),), "kg m/s": ((1 / POUND, "lbf·s"),)}
+COLUMN = re.compile("_(kg_m_s|m_s2|m3_s|m_s|m3|m2|m|J|Pa|N|kg|K|s|deg)$")  # by which names of columns end
 _of_run = {"us": False}
 SI = {"": 1, "Pa": 1, "kPa": 1e3, "MPa": 1e6, "N/m2": 1, "kN/m2": 1e3, "psf": 47.88025898, "ksf": 47880.25898, "psi": 6894.757293, "bar": 1e5,
       "m": 1, "cm": 0.01, "mm": 1e-3, "ft": 0.3048, "s": 1, "min": 60, "h": 3600, "day": 86400, "d": 86400, "deg": 1, "m/s": 1, "mm/h": 1e-3 / 3600, "mm/day": 1e-3 / 86400}
@@ -24,9 +25,30 @@ def use(scene):
     _of_run["us"] = scene.get("output", {}).get("units") == "US"
 
 
+def in_use(unit):
+    """(factor, unit) in which charts and tables write all values of an SI unit: (3.28, "ft") for "m" where the scene asks for it."""
+    unit = shown(unit)
+    of, metre = (unit[:-2], "/m") if unit.endswith("/m") else (unit, "")  # of a metre of the slope
+    if not _of_run["us"] or of not in US:
+        return 1.0, unit
+    factor, name = US[of][0]
+    return (factor * FOOT, f"{name}/ft") if metre else (factor, name)
+
+
 def length():
     """(factor, unit) of places."""
-    return US["m"][0] if _of_run["us"] else (1.0, "m")
+    return in_use("m")
+
+
+def of_length(text):
+    """The name of an axis of places: "elevation [m]"."""
+    return with_unit(text, length()[1])
+
+
+def of_column(name):
+    """What the name of a column says: (words, SI unit), ("crest displacement", "m") of crest_displacement_m."""
+    match = COLUMN.search(name)
+    return words(COLUMN.sub("", name)), shown(match[1].replace("_s", "/s").replace("_", " ")) if match else ""
 
 
 class Keys:
@@ -87,7 +109,7 @@ def text_of(value, unit="", over_time=False):
     rest = value.strip()[match.end():].strip() if match else ""
     if match and not rest:
         return quantity(float(value), unit)
-    if match and _of_run["us"] and unit in US and rest in SI:
+    if match and in_use(unit)[0] != 1 and rest in SI:
         return quantity(number(value), unit)
     return shown(value) if match and UNIT.match(rest) else f"{value} [{shown(unit)}]"
 
@@ -103,7 +125,7 @@ def list_of(values, unit, over_time):
         return "; ".join(text_of(one, unit, over_time) for one in values)
     own = any(isinstance(x, str) for one in values for x in one)  # some values carry their unit, so each is written with one
     say = (lambda one: f"{text_of(one[1], unit)} at {text_of(one[0], 's')}") if over_time else (lambda one: f"({', '.join(text_of(x, unit) if own else str(x) for x in one)})")
-    if _of_run["us"] and unit in US and not own and not over_time:
+    if in_use(unit)[0] != 1 and not own and not over_time:
         factor, unit = readable_unit(max(abs(x) for one in values for x in one), unit)
         values = [[f"{factor * x:.5g}" for x in one] for one in values]
     few = values if len(values) <= ENTRIES else [values[0], values[-1]]
@@ -170,15 +192,29 @@ def capital(text):
 
 def readable_unit(largest, unit):
     """Factor and unit in which numbers up to `largest` read well: 110000 Pa -> (1e-3, 'kPa')."""
-    if _of_run["us"] and unit in US:
-        return next((one for one in reversed(US[unit]) if largest * one[0] >= 1), US[unit][0])
-    if unit in ("Pa", "J", "N", "W"):
+    factor, name = in_use(unit)
+    of, metre = (unit[:-2], "/m") if unit.endswith("/m") else (unit, "")
+    if _of_run["us"] and shown(of) in US:
+        every = US[shown(of)]
+        larger = next((one for one in reversed(every) if largest * factor * one[0] >= every[0][0]), every[0])
+        return factor * larger[0] / every[0][0], name.replace(every[0][1], larger[1])
+    if of in ("Pa", "J", "N", "W"):
         for power, prefix in ((9, "G"), (6, "M"), (3, "k")):
             if largest >= 10**power:
                 return 10.0**-power, prefix + unit
     if unit in ("m", "m/s") and 0 < largest < 0.1:
         return 1e3, "m" + unit
     return 1.0, "" if unit in ("-", "1") else unit
+
+
+def brief(value, unit):
+    """A number of three digits or, from 1000 on, without decimals, in a unit in which it reads well."""
+    factor, unit = readable_unit(abs(value), unit)
+    return with_shown(f"{factor * value:.3g}" if abs(factor * value) < 1000 else thousands(round(factor * value)), unit)
+
+
+def thousands(number):
+    return f"{number:,}".replace(",", "\u202f")
 
 
 def with_unit(text, unit):

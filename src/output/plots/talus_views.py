@@ -6,7 +6,7 @@ from talus_moments import in_both
 from talus_relief import Eye
 from talus_results import slides
 from talus_tiles import GAP_IN_SPACE, tiles
-from talus_units import length
+from talus_units import length, of_length
 from talus_way import Way
 
 ASTRAY = 2.0  # how far the way of a slide may leave a plane of two axes, over the spacing of particles, and is still shown there
@@ -22,7 +22,7 @@ class View:
 
     @property
     def labels(self):
-        return [f"{'xyz'[axis]} [{length()[1]}]" for axis in (self.across, self.up)]
+        return [of_length('xyz'[axis]) for axis in (self.across, self.up)]
 
     def flat(self, position):
         return position[:, [self.across, self.up]]
@@ -56,7 +56,7 @@ class WayView(View):
 
     @property
     def labels(self):
-        return [f"distance along the slide [{length()[1]}]", f"{'xyz'[self.up]} [{length()[1]}]"]
+        return [of_length("distance along the slide"), of_length('xyz'[self.up])]
 
     def flat(self, position):
         return np.column_stack([self.plane.beside(position[:, self.level])[0], position[:, self.up]])
@@ -81,7 +81,7 @@ class MapView(View):
 
     @property
     def labels(self):
-        return [f"x, east [{length()[1]}]", f"y, north [{length()[1]}]"] if self.of_terrain else super().labels
+        return [of_length("x, east"), of_length("y, north")] if self.of_terrain else super().labels
 
 
 class Oblique:
