@@ -6,7 +6,7 @@ import sys
 import numpy as np
 
 from talus_results import Thickness, largest_displacement, still_moving
-from talus_units import quantity
+from talus_units import quantity, span
 
 LIMIT = 0.5  # least thickness of soil that counts, over the size of particles: thinner soil is single particles
 LEFT_OUT = 0.02  # share of the volume that slid: less that moved and is not mapped is not told
@@ -159,7 +159,7 @@ class Deposit:
     def beside(self, beyond):
         """What is not mapped though it moved, in words; `beyond` is the displacement that was asked for [m], or None."""
         left_out, moved = self.left_out()
-        return (f"{quantity(left_out, 'm³', '.3g')} that moved by {metres(moved[0])} to {metres(moved[1])} are not mapped, and are {100 * left_out / (left_out + self.volume[-1]):.3g} % of "
+        return (f"{quantity(left_out, 'm³', '.3g')} that moved by {span(*moved, 'm')} are not mapped, and are {100 * left_out / (left_out + self.volume[-1]):.3g} % of "
                 "what moved by more than a particle: soil slides in these maps where it moved by more than "
                 + (f"--moved {beyond:g} m" if beyond else "a tenth of the largest displacement, which 99.9 % of the mass have at most")
                 + f"; --moved {self.size:.2g} maps all of it")
@@ -199,8 +199,8 @@ class Deposit:
 
     def _ends(self, first, last):
         """The crown at the start and the toe of the deposit."""
-        start = self.axes.level(first.position())[np.isin(first.ids(), self.sliding, assume_unique=True)]
-        self.crown = start[start[:, 2].argmax()]
+        self.start = self.axes.level(first.position())[np.isin(first.ids(), self.sliding, assume_unique=True)]
+        self.crown = self.start[self.start[:, 2].argmax()]
         # the toe is the cell of the deposit that is furthest from the crown; its elevation is that of the lowest particle there
         east, north = (at[self.covered[-1]] for at in np.meshgrid(*self.grid.centres(), indexing="ij"))
         far = np.hypot(east - self.crown[0], north - self.crown[1]).argmax()
@@ -213,8 +213,10 @@ class Deposit:
     def numbers(self):
         """Measures of the deposit, by their names with units, as attributes of its outline."""
         deposit, area = self.thickness[-1], self.covered[-1].sum() * self.grid.spacing**2
-        travel, fall = np.linalg.norm((self.toe - self.crown)[:2]), self.crown[2] - self.toe[2]
+        way = (self.toe - self.crown)[:2]
+        travel, fall = np.linalg.norm(way), self.crown[2] - self.toe[2]
+        front = ((self.start[:, :2] - self.crown[:2]) @ way).max() / max(travel, 1e-300)  # at the start, in the same direction
         inside = deposit[self.covered[-1]].sum() * self.grid.spacing**2
-        return {"area_m2": area, "volume_m3": inside, "travel_distance_m": travel, "fall_height_m": fall,
+        return {"area_m2": area, "volume_in_outline_m3": inside, "travel_distance_m": travel, "run_out_from_toe_m": travel - front, "fall_height_m": fall,
                 "angle_of_reach_deg": np.degrees(np.arctan2(fall, travel)), "mean_thickness_m": inside / area,
                 "largest_thickness_m": deposit.max(), "least_thickness_m": self.limit, "time_s": self.times[-1]}

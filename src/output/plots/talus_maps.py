@@ -37,9 +37,8 @@ class Maps(Deposit):
         self.change = self._column(last) - self._column(first)
         self.ground = Ground(self.node.min(axis=0), self.node.max(axis=0), self.size, (0, 1), 2, (self.node, self.cells))
         self.before = self.surface(first)
-        start = self.axes.level(first.position())[np.isin(first.ids(), self.sliding, assume_unique=True)]
         east, north = (at[self.covered[-1]] for at in np.meshgrid(*self.grid.centres(), indexing="ij"))
-        self.way = Way.of(self.path[:, :2], start[:, :2], start[:, 2], np.column_stack([east, north]), self.size)  # of the section
+        self.way = Way.of(self.path[:, :2], self.start[:, :2], self.start[:, 2], np.column_stack([east, north]), self.size)  # of the section
 
     def mapped(self):
         return self.results.snapshots
@@ -219,7 +218,7 @@ def main():
              "takes a longer duration or, where it ended by rest, a smaller rest_speed")
     if maps.left_out()[0] > LEFT_OUT * maps.volume[-1]:
         warn(maps.beside(given.moved))
-    inside, deposit = maps.numbers()["volume_m3"], maps.thickness[-1].sum() * maps.grid.spacing**2
+    inside, deposit = maps.numbers()["volume_in_outline_m3"], maps.thickness[-1].sum() * maps.grid.spacing**2
     if inside < (1 - THIN) * deposit:
         warn(f"the outline holds {quantity(inside, 'm³')} of the deposit of {quantity(deposit, 'm³')}: the other {100 * (1 - inside / deposit):.2g} % are thinner than the limit "
              f"of {metres(maps.limit)}; --limit {maps.limit_of(TAKEN_IN):.2g} takes in {100 * TAKEN_IN:.3g} % of it. A flow that is thinner than one or two "
@@ -233,7 +232,7 @@ def main():
     released, gone = maps.released()
     factor, unit = in_use("m³")
     print(f"  {'released':20} {factor * released:12.6g} {unit}, the volume of this soil at the start{f', of which {factor * gone:.4g} {unit} left the mesh' if gone else ''}")
-    print(f"  {'volume that slid':20} {factor * maps.volume[-1]:12.6g} {unit}, in the grid {factor * deposit:.6g} {unit}")
+    print(f"  {'volume of slide':20} {factor * maps.volume[-1]:12.6g} {unit}, in the grid {factor * deposit:.6g} {unit}")
     print(f"maps are in {folder}: grids as .tif{', .asc' if given.ascii else ''}, deposit.gpkg, map.png, section.png")
 
 

@@ -194,7 +194,7 @@ def slide(results):
     front = after >= after.max() - spacing(last)
     fall, area = start[inside, up].max() - end[inside][front, up].min(), None
     if mapped := deposit(results):
-        travel, fall, area = mapped["travel_distance_m"], mapped["fall_height_m"], float(mapped["area_m2"])
+        travel, from_toe, fall, area = (mapped[name] for name in ("travel_distance_m", "run_out_from_toe_m", "fall_height_m", "area_m2"))
     column = np.floor(start[:, level] / (volume.mean() ** (1 / moved.shape[1]) * 1.5)).astype(int)
     _, number = np.unique(column, axis=0, return_inverse=True)
     number = number.reshape(-1)
@@ -203,7 +203,7 @@ def slide(results):
     np.minimum.at(base, number[inside], start[inside, up])
     deepest = int(np.argmax(ground - base))
     place = start[number == deepest, level[0]].mean()
-    return Slide(float(travel), float(volume[inside].sum()), float(ground[deepest] - base[deepest]), float(place), float(from_toe), float(fall), area)
+    return Slide(float(travel), float(volume[inside].sum()), float(ground[deepest] - base[deepest]), float(place), float(from_toe), float(fall), area and float(area))
 
 
 def deposit(results):

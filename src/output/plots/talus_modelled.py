@@ -142,7 +142,7 @@ class Boundary:
             return ""
         corners = self.corners.reshape(-1, 3)
         flat = np.flatnonzero(np.ptp(corners, axis=0) < 1e-6 * np.ptp(corners, axis=0).max())
-        return f" ({'xyz'[flat[0]]} = {quantity(float(f'{corners[0, flat[0]]:.4g}'), 'm')})" if len(flat) == 1 else ""
+        return f" ({'xyz'[flat[0]]} = {quantity(corners[0, flat[0]], 'm', '.4g')})" if len(flat) == 1 else ""
 
     def line(self):
         values = self.at_start()

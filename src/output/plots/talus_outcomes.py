@@ -66,7 +66,7 @@ def in_words(row, cell):
     small, cell = row["largest_displacement_m"] <= SMALL * cell, quantity(cell, "m", ".2g")
     if row["state"] == FAILS:
         load = row["load_time_of_failure_s"]
-        return f"soil moved by more than a cell of {cell}" if load is None else f"the watched point failed under the loads of t = {load:.3g} s"
+        return f"soil moved by more than a cell of {cell}" if load is None else f"the watched point failed under the loads of t = {load:.4g} s"
     if row["state"] == MOVES:
         return f"soil slid by less than a cell of {cell}: smaller cells show whether it fails"
     return f"no soil moved by more than {100 * SMALL:g} % of a cell of {cell}" if small else "soil deformed as a whole, without sliding"

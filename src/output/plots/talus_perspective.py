@@ -220,7 +220,7 @@ def edges(axes, camera, low, high, metres):
         free = [min(gap(place[None], beside), 0.5 * gap(place[None], np.array(labelled))) if labelled else gap(place[None], beside) for place in places]
         at = places[next((k for k, distance in enumerate(free) if distance > 0.45 * metres), int(np.argmax(free)))]
         labelled.append(at)
-        axes.text(*at, f"{'xyz'[axis]}: {quantity(float(f'{high[axis] - low[axis]:.3g}'), 'm')}", ha="center", va="center", fontsize=8, zorder=10,
+        axes.text(*at, f"{'xyz'[axis]}: {quantity(high[axis] - low[axis], 'm', '.3g')}", ha="center", va="center", fontsize=8, zorder=10,
                   bbox={"fc": "white", "ec": "none", "pad": 1.2})
     return lines
 

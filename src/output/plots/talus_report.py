@@ -14,7 +14,7 @@ from talus_histories import base_friction
 from talus_loads import loads_at
 from talus_measures import flow, known
 from talus_modelled import stage_rows
-from talus_moments import moved_before
+from talus_moments import last_reset, moved_before, since
 from talus_outcomes import in_words, outcome
 from talus_play import ROWS
 from talus_results import NOT_ENDED, SLOW, largest_displacement, read_factor, sliding, still_moving
@@ -154,7 +154,7 @@ def key_results(results, model=None):
         vector = last.column("displacement").values
         level, rise = level_and_upright(vector, results.up_axis())
         parts = f"{brief(level, 'm')} level, {brief(rise, 'm')} up or down"
-        found.append(("Largest displacement", brief(largest_displacement(last), "m"), f"of 99.9 % of the mass; of any particle {parts}{without}" + f"; {when}" * (factor is not None)))
+        found.append(("Largest displacement", brief(largest_displacement(last), "m"), f"of 99.9 % of the mass, {since((last_reset(results) or ('', ''))[1])}; of any particle {parts}{without}" + f"; {when}" * (factor is not None)))
         if "volume" in last:
             came_to = outcome(results)
             if lost:
@@ -163,7 +163,7 @@ def key_results(results, model=None):
                 found.append((f"State {when}", came_to["state"], in_words(came_to, came_to["cell_m"]) + motion_at_end(last)))
             volume = came_to["volume_of_slide_m3"]
             note = "no soil slides" if volume is None else "moved more than a tenth of the largest"
-            found.append(("Sliding volume", brief(volume or 0.0, results.per_metre("m³")), note + without))
+            found.append(("Volume of slide", brief(volume or 0.0, results.per_metre("m³")), note + without))
             if came_to.get("travel_distance_m"):
                 found += run_out(came_to)
     depth = flow(results) if "displacement" in last and "volume" in last else None
@@ -191,7 +191,7 @@ def key_results(results, model=None):
 
 def run_out(came_to):
     """[(what, number, note)] of how far a slide went."""
-    found = [("Travel distance L", brief(came_to["travel_distance_m"], "m"), "level, from the crown at the start to the front at the end"),
+    found = [("Travel distance", brief(came_to["travel_distance_m"], "m"), "L, level, from the crown at the start to the front at the end"),
              ("Run-out from the toe", brief(came_to["run_out_from_toe_m"], "m"), "front at the end beyond that at the start"),
              ("Angle of reach", f"{came_to['angle_of_reach_deg']:.1f}°", f"H/L = {came_to['fall_height_m'] / came_to['travel_distance_m']:.3g}, fall H = {brief(came_to['fall_height_m'], 'm')}")]
     return found + ([("Area of the deposit", brief(came_to["area_m2"], "m²"), "as maps outline it")] if came_to["area_m2"] else [])

@@ -489,12 +489,8 @@ class Results:
         for name, group in self._file["snapshots"].items():
             if group is None:
                 raise OSError(f"{self._file['snapshots'].get(name, getlink=True).filename}, to which it refers, is missing or damaged")
-        self.snapshots = self._snapshots(self._file["snapshots"].values())
-
-    def _snapshots(self, groups):
-        snapshots = [Snapshot(group, {}) for group in groups]
-        self._derive(snapshots)
-        return snapshots
+        self.snapshots = [Snapshot(group, {}) for group in self._file["snapshots"].values()]
+        self._derive(self.snapshots)
 
     def _derive(self, snapshots):
         """Gives snapshots the fields that follow from the last of them."""
@@ -513,11 +509,12 @@ class Results:
     def before_reduction(self):
         """The same without the mechanism that the search for a factor of safety leaves as the last state: its displacement has any size, and it is no
         state of the slope. Results without one are returned as they are."""
-        kept = [group for group in self._file["snapshots"].values() if group.attrs["stage"] != MECHANISM]
+        kept = [copy.copy(snapshot) for snapshot in self.snapshots if snapshot.stage != MECHANISM]
         if len(kept) in (0, len(self.snapshots)):
             return self
         other = copy.copy(self)
-        other.snapshots = self._snapshots(kept)
+        other.snapshots = kept
+        other._derive(kept)
         other.history = self.history.without(MECHANISM) if self.history else None
         other._without = MECHANISM
         return other

@@ -212,7 +212,7 @@ def dimension(axes, begin, end):
     line = axes.annotate("", begin, end, zorder=9, annotation_clip=False, arrowprops={"arrowstyle": "<->", "color": style.SOFT, "lw": 0.8, "shrinkA": 0, "shrinkB": 0})
     line.of_line = True
     upright = abs(end[1] - begin[1]) > abs(end[0] - begin[0])
-    length = quantity(float(f"{np.linalg.norm(end - begin):.4g}"), "m")
+    length = quantity(np.linalg.norm(end - begin), "m", ".4g")
     name = axes.text(*(begin + end) / 2, length, rotation=90 if upright else 0, ha="center", va="center", fontsize=8, zorder=10,
                      bbox={"fc": "white", "ec": "none", "pad": 1.2})
     name.of_line = False

@@ -16,7 +16,8 @@ US = {"m": ((1 / FOOT, "ft"),), "m/s": ((1 / FOOT, "ft/s"),), "m/s²": ((1 / FOO
       "N/m³": ((FOOT**3 / POUND, "pcf"),), "kg": ((9.80665 / POUND, "lb"),), "t": ((9806.65 / POUND / 1e3, "kip"),), "kg m/s": ((1 / POUND, "lbf·s"),)}
 COLUMN = re.compile("_(kg_m_s|m_s2|m3_s|m_s|m3|m2|m|J|Pa|N|kg|K|s|deg)$")  # by which names of columns end
 _of_run = {"us": False}
-SI = {"": 1, "Pa": 1, "kPa": 1e3, "MPa": 1e6, "N/m2": 1, "kN/m2": 1e3, "psf": 47.88025898, "ksf": 47880.25898, "psi": 6894.757293, "bar": 1e5,
+SI = {"": 1, "Pa": 1, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9, "N/m2": 1, "kN/m2": 1e3, "MN/m2": 1e6, "N/m3": 1, "kN/m3": 1e3, "kg/m3": 1, "t/m3": 1e3, "g/cm3": 1e3,
+      "psf": 47.88025898, "ksf": 47880.25898, "psi": 6894.757293, "bar": 1e5,
       "m": 1, "cm": 0.01, "mm": 1e-3, "ft": 0.3048, "s": 1, "min": 60, "h": 3600, "day": 86400, "d": 86400, "deg": 1, "m/s": 1, "mm/h": 1e-3 / 3600, "mm/day": 1e-3 / 86400}
 
 
@@ -133,10 +134,11 @@ def list_of(values, unit, over_time):
     return text if over_time or own else with_shown(text, unit)
 
 
-def quantity(value, unit, digits=".6g"):
-    """A number in a unit in which it reads well."""
-    factor, unit = readable_unit(abs(value), unit)
-    return with_shown(f"{factor * value:{digits}}", unit)
+def quantity(value, unit, digits=None):
+    """A number in a unit in which it reads well, with six digits, or four of one that is converted from SI."""
+    factor, named = readable_unit(abs(value), unit)
+    rounded = float(f"{factor * value:{digits or ('.6g' if in_use(unit)[0] == 1 else '.4g')}}")
+    return with_shown(f"{rounded:.6g}", named)
 
 
 def span(low, high, unit):

@@ -23,8 +23,11 @@ from osgeo import gdal, ogr, osr
 
 TALUS, MPIEXEC = sys.argv[1:3]
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "src/output/plots"))
+import talus_deposit
 import talus_map_pictures
 import talus_maps
+import talus_units
+from talus_style import plt
 
 gdal.UseExceptions()
 ogr.UseExceptions()
@@ -173,7 +176,7 @@ class Grids(unittest.TestCase):
 
     def test_thickness_of_a_box_of_cubes(self):
         for spacing in (0.25, 0.07):  # wider and narrower than a particle
-            grid = talus_maps.Grid(np.zeros(3), np.array([2.0, 1.0, 1.0]), spacing)
+            grid = talus_deposit.Grid(np.zeros(3), np.array([2.0, 1.0, 1.0]), spacing)
             self.assertAlmostEqual(grid.centres()[0][0], 0, delta=1e-12)  # as those of a terrain file
             thickness, = grid.spread(self.place, self.size, [self.size**3]) / spacing**2
             share = [np.clip(np.minimum(at + spacing / 2, high) - np.maximum(at - spacing / 2, low), 0, None) / spacing
@@ -181,13 +184,13 @@ class Grids(unittest.TestCase):
             np.testing.assert_allclose(thickness, 0.3 * np.outer(*share), atol=1e-12)
 
     def test_nothing_is_lost_at_the_edge(self):
-        grid = talus_maps.Grid(np.zeros(3), np.ones(3), 0.25)  # ends within the box
+        grid = talus_deposit.Grid(np.zeros(3), np.ones(3), 0.25)  # ends within the box
         volume, = grid.spread(self.place, self.size, [self.size**3])
         self.assertAlmostEqual(volume.sum(), 0.15, delta=1e-12)
 
 
     def test_thickness_evens_out_within_the_soil(self):
-        grid = talus_maps.Grid(np.zeros(3), np.array([20.0, 20.0, 1.0]), 1.0)
+        grid = talus_deposit.Grid(np.zeros(3), np.array([20.0, 20.0, 1.0]), 1.0)
         east, north = np.meshgrid(*grid.centres(), indexing="ij")
         point = np.where((east == 10) & (north == 10), 4.0, 0.0)
         even = grid.evened_out(point, point >= 0, 6.0)
@@ -206,7 +209,7 @@ class Grids(unittest.TestCase):
 
     def test_cells_hold_whole_cells_of_the_terrain(self):
         for spacing in (2.5, 5.0, 10.0, 15.0):
-            grid = talus_maps.Grid(np.zeros(3), np.array([100.0, 70.0, 1.0]), spacing, 5.0)
+            grid = talus_deposit.Grid(np.zeros(3), np.array([100.0, 70.0, 1.0]), spacing, 5.0)
             np.testing.assert_allclose(grid.low, -2.5)
             self.assertEqual(grid.shape, tuple(int(np.ceil(one / spacing)) for one in (105, 75)))
 
@@ -265,8 +268,8 @@ class Maps(unittest.TestCase):
                 np.testing.assert_allclose(ascii_low, low, atol=1e-9)
                 numbers, _, _ = feature(results, "outline")
                 inside = np.where(thickness >= 0.2, thickness, 0)
-                self.assertAlmostEqual(numbers["volume_m3"], inside.sum() * cell**2, delta=1e-6)
-                self.assertAlmostEqual(numbers["mean_thickness_m"], numbers["volume_m3"] / numbers["area_m2"], delta=1e-9)
+                self.assertAlmostEqual(numbers["volume_in_outline_m3"], inside.sum() * cell**2, delta=1e-6)
+                self.assertAlmostEqual(numbers["mean_thickness_m"], numbers["volume_in_outline_m3"] / numbers["area_m2"], delta=1e-9)
                 self.assertAlmostEqual(numbers["largest_thickness_m"], thickness.max(), delta=1e-6)
                 self.assertAlmostEqual(numbers["least_thickness_m"], 0.2, delta=1e-12)
                 self.assertAlmostEqual(numbers["time_s"], 0.1, delta=1e-12)
@@ -277,6 +280,7 @@ class Maps(unittest.TestCase):
                 self.assertIn("100 % of what slid is faster than 0.1 m/s", said)
                 # from the crown, at the upper face of the block at the start, to the middle of the furthest cell
                 self.assertTrue(0.5 < numbers["travel_distance_m"] < np.hypot(1.5, 0.6) + cell)
+                self.assertTrue(0.7 < numbers["run_out_from_toe_m"] < 1 + cell)  # the block flew by 1 m, nearly in this direction
                 self.assertTrue(0.3 < numbers["fall_height_m"] < 0.5)  # particles lie inside of the block, 0.5 m high
                 angle = np.degrees(np.arctan(numbers["fall_height_m"] / numbers["travel_distance_m"]))
                 self.assertAlmostEqual(numbers["angle_of_reach_deg"], angle, delta=1e-9)
@@ -313,7 +317,7 @@ class Maps(unittest.TestCase):
                 np.testing.assert_allclose(np.nanmedian(speed), np.sqrt(276), rtol=0.01)
 
     def test_outline_has_holes(self):
-        grid = talus_maps.Grid(np.zeros(3), np.array([6.0, 6.0, 1.0]), 1.0)
+        grid = talus_deposit.Grid(np.zeros(3), np.array([6.0, 6.0, 1.0]), 1.0)
         axes = types.SimpleNamespace(origin=np.array([WEST, SOUTH, 0.0]), projection="")
         maps = types.SimpleNamespace(grid=grid, axes=axes, results=types.SimpleNamespace(title=""))
         mask = np.zeros(grid.shape, bool)
@@ -417,17 +421,35 @@ class Maps(unittest.TestCase):
 
     def test_an_outline_that_leaves_out_much_of_the_deposit_is_told(self):
         said = talus("maps", "block1", "--spacing", 0.25, "--limit", 0.5)
-        found = re.search(r"the outline holds (\S+) m3 of the deposit of (\S+) m3: the other \S+ % are thinner than the limit of 0.5 m; "
+        found = re.search(r"the outline holds (\S+) m³ of the deposit of (\S+) m³: the other \S+ % are thinner than the limit of 0.5 m; "
                           r"--limit (\S+) takes in 95 % of it", said)
         inside, whole, limit = map(float, found.groups())
         numbers, _, _ = feature("block1", "outline")
-        self.assertAlmostEqual(inside, numbers["volume_m3"], delta=1e-5 * inside)
+        self.assertAlmostEqual(inside, numbers["volume_in_outline_m3"], delta=1e-5 * inside)
         self.assertAlmostEqual(whole, volume_of("block1"), delta=1e-5 * whole)
         self.assertLess(inside, 0.9 * whole)
         said = mapped("block1", "--spacing", 0.25, "--limit", limit)
         self.assertNotIn("the outline holds", said)
         numbers, _, _ = feature("block1", "outline")
-        self.assertGreaterEqual(numbers["volume_m3"], 0.95 * whole)
+        self.assertGreaterEqual(numbers["volume_in_outline_m3"], 0.95 * whole)
+
+    def test_words_pictures_and_legends_have_the_units_of_the_scene(self):
+        def us(_):
+            talus_units.use({"output": {"units": "US"}})
+        self.addCleanup(talus_units.use, {})
+        with unittest.mock.patch.object(talus_maps, "use", us):
+            said = mapped("block1")
+            self.assertIn("at up to 32.8 ft/s", said)
+            self.assertRegex(said, r"least thickness +0\.\d+ ft\n")
+            legend = xml.dom.minidom.parse(str(FOLDER / "block1/maps/largest_speed.qml")).getElementsByTagName("item")[-1]
+            self.assertAlmostEqual(float(legend.getAttribute("value")), 10, delta=1e-2)  # of the grid, which is in SI
+            self.assertEqual(legend.getAttribute("label"), "32.8 ft/s")
+            for results, unit in (("block1", "ft"), ("plane1", "m")):  # places of a terrain file are its own
+                with unittest.mock.patch.object(talus_map_pictures.style, "save", lambda figure, path: figure):
+                    figure = talus_map_pictures.draw_map(talus_maps.Maps(talus_maps.checked(FOLDER / results)), None)
+                    self.assertTrue(figure.axes[0].get_xlabel().startswith(f"east [{unit}]"), results)
+                    self.assertTrue(figure.axes[1].get_ylabel().endswith("[ft]"))
+                    plt.close(figure)
 
     def test_arrow_and_scale_lie_on_the_ground_where_cells_reach_beyond_it(self):
         maps = talus_maps.Maps(talus_maps.checked(FOLDER / "plane1"), 50.0)
@@ -461,14 +483,14 @@ class Maps(unittest.TestCase):
         talus("run", "block.toml", "-o", "stands", "--no-pictures", *velocity)
         said = mapped("stands", "--spacing", 0.25, status=2)
         self.assertIn("no soil has slid far enough for a map", said)
-        self.assertIn("the largest displacement, 0.05 m", said)
+        self.assertIn("the largest displacement, 50 mm", said)
 
     def test_particles_that_left_are_said(self):
         (FOLDER / "longer.toml").write_text(BLOCK.replace("duration = 0.1", "duration = 0.23"))
         talus("run", "longer.toml", "-o", "left", "--no-pictures")
         said = mapped("left", "--spacing", 0.25)
         gone = volume_of("left", 0) - volume_of("left")
-        self.assertIn(f"with a volume of {gone:.4g} m3 at the start left the mesh", said)
+        self.assertIn(f"with a volume of {gone:.4g} m³ at the start left the mesh", said)
         arrival, _, _ = read(FOLDER / "left/maps/arrival_time.tif")
         self.assertTrue(np.isfinite(arrival[3:12, 1]).all())  # also where soil went that has left
 
@@ -480,7 +502,7 @@ class Maps(unittest.TestCase):
             moved[~slow] *= 20  # the others move by a twentieth of that
             last["displacement"][...] = moved
         said = mapped("torn", "--spacing", 0.25)
-        self.assertIn(f"{volume[slow].sum():.3g} m3 that moved by 1 to 1 m are not mapped", said)
+        self.assertIn(f"{volume[slow].sum():.3g} m³ that moved by 1 m are not mapped", said)
         self.assertIn("by more than a tenth of the largest displacement", said)
         self.assertAlmostEqual(read(FOLDER / "torn/maps/thickness.tif")[0].sum() * 0.0625, volume[~slow].sum(), delta=1e-6)
         said = mapped("torn", "--spacing", 0.25, "--moved", 0.9)

@@ -183,7 +183,7 @@ class Outcomes(unittest.TestCase):
             self.assertEqual(cards["State at the end"][0], row["state"])
             shown = float(cards["Largest displacement"][0].split()[0]) / (1000 if " mm" in cards["Largest displacement"][0] else 1)
             self.assertAlmostEqual(shown / float(row["largest_displacement_m"]), 1, delta=0.005)  # three digits
-            self.assertAlmostEqual(float(cards["Sliding volume"][0].split()[0]), float(row["volume_of_slide_m3"]), delta=0.05)  # three digits
+            self.assertAlmostEqual(float(cards["Volume of slide"][0].split()[0]), float(row["volume_of_slide_m3"]), delta=0.05)  # three digits
         self.assertIn("less than a cell of 0.77 m", cards_note(self.folder / "out/run00001"))
 
     def test_a_slide_that_has_not_come_to_rest_is_one_for_log_screen_and_report(self):

@@ -99,6 +99,7 @@ class Module(unittest.TestCase):
         np.testing.assert_allclose(since.snapshots[-1].values("displacement"), last.values("displacement") - before.values("displacement"), atol=1e-12)
         np.testing.assert_array_equal(last.values("displacement"), Results(self.slope).snapshots[-1].values("displacement"))
         self.assertEqual(since.history["crest_displacement_m"][0], 0)
+        self.assertIs(since.before_reduction(), since)  # as the report asks for it
         self.refused(KeyError, "did you mean slide", self.results.since, "slid")
 
     def test_lines_and_model_are_read(self):

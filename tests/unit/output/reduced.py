@@ -43,12 +43,13 @@ class Doubts(unittest.TestCase):
                            ((0, 0, "start", 0), (1, 5, "gravity", 0.1), (1.5, 6, MECHANISM, 1.2)) for k in range(3)))
         results = Results.__new__(Results)
         results.folder, results.history = folder, None
-        groups = {name: types.SimpleNamespace(attrs={"stage": name}) for name in ("start", "gravity", MECHANISM)}
-        results._file, results.snapshots = {"snapshots": groups}, list(groups)
-        results._snapshots = list
+        results.snapshots = [types.SimpleNamespace(stage=name) for name in ("start", "gravity", MECHANISM)]
+        results._derive = lambda snapshots: None
         self.assertEqual(results.lines()["inclinometer"].moved().max(), 1.2)
         line = results.before_reduction().lines()["inclinometer"]
         self.assertEqual((line.stage, line.moved().max(), line.moved().shape), (["start", "gravity"], 0.1, (2, 3, 1)))
+        results.snapshots = results.snapshots[1:]  # as of results since a stage
+        self.assertEqual([snapshot.stage for snapshot in results.before_reduction().snapshots], ["gravity"])
 
     def test_a_stage_without_equilibrium_is_no_state_that_stands(self):
         results = types.SimpleNamespace(snapshots=[Snapshot(displacement=0, volume=0)], bodies=["clay"], history=None, escaped=None, scene={}, up_axis=lambda: 1,

@@ -137,7 +137,7 @@ class Report(unittest.TestCase):
         try:
             self.assertEqual([quantity(of, unit, ".3g") for of, unit in ((20e3, "Pa"), (1e6, "Pa"), (0.03, "m"), (2000, "kg/m3"), (19.62e3, "N/m3"))],
                              ["418 psf", "20.9 ksf", "0.0984 ft", "125 pcf", "125 pcf"])
-            self.assertEqual((text_of("7 kPa", "Pa"), text_of("1 m", "m"), text_of([[0, 1], [10, 2]], "m")), ("146.198 psf", "3.28084 ft", "(0, 3.2808), (32.808, 6.5617) ft"))
+            self.assertEqual((text_of("7 kPa", "Pa"), text_of("1 m", "m"), text_of([[0, 1], [10, 2]], "m")), ("146.2 psf", "3.281 ft", "(0, 3.2808), (32.808, 6.5617) ft"))
         finally:
             use({})
         self.assertEqual((text_of("7 kPa", "Pa"), text_of([[0, 1], [10, 2]], "m")), ("7 kPa", "(0, 1), (10, 2) m"))
