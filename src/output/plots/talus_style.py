@@ -11,7 +11,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.colors import LinearSegmentedColormap, ListedColormap
+from matplotlib.colors import LinearSegmentedColormap, ListedColormap, to_hex, to_rgb
 from matplotlib.ticker import FuncFormatter, Locator, MaxNLocator, NullFormatter
 
 from talus_units import length
@@ -39,17 +39,23 @@ def part_of(name, low, high):
 
 
 GROUND = ("#a9a29a", "#c2a278", "#b9bfa4", "#e8d5b0", "#e0b88a", "#d5cfc9", "#a8895f", "#d8c774")  # of the soils
+TINTS, SHADE = 71, 0.05  # of these colours: so many in all, which differ by this share of black or white; no multiple of the colours divides 71
 
 
 def soil_colours(names):
-    """The colour of each soil, by its name: a further soil takes one that is free, and most others keep theirs."""
-    found, free = {}, list(GROUND)
+    """The colour of each soil, which follows from its name alone, so that it stays as soils are added; but two that would have the same one differ by a shade."""
+    taken = {}
     for name in sorted(names, key=lambda one: zlib.crc32(one.encode())):
-        wanted = GROUND[zlib.crc32(name.encode()) % len(GROUND)]
-        found[name] = wanted if wanted in free else free[0]
-        free.remove(found[name])
-        free = free or list(GROUND)
-    return [found[name] for name in names]
+        tint = zlib.crc32(name.encode()) % TINTS
+        while tint in taken.values() and len(taken) < TINTS:
+            tint = (tint + len(GROUND)) % TINTS
+        taken[name] = tint
+    return [shaded(GROUND[taken[name] % len(GROUND)], SHADE * (taken[name] // len(GROUND) - 4)) for name in names]
+
+
+def shaded(colour, share):
+    """A colour with a share of white, or of black where it is negative."""
+    return to_hex((1 - abs(share)) * np.array(to_rgb(colour)) + max(share, 0.0))
 
 
 STATES = ("elastic", "peak", "softening", "residual")  # values 0, 1, 2, 3 of the field state

@@ -916,6 +916,16 @@ class Soils(unittest.TestCase):
             np.testing.assert_allclose(picture[row, 15], scale.map(scale.norm(1.0)))
         self.assertLess(picture[4, 3, :3].sum(), picture[2, 3, :3].sum() - 0.5)  # the line between them
 
+    def test_keep_their_colours_as_others_are_added(self):
+        names = ["clay", "sand", "silt", "fill", "rock", "gravel", "crust"]
+        whole = dict(zip(names, talus_style.soil_colours(names)))
+        for count in range(1, len(names)):
+            for some in (names[:count], names[count:]):
+                self.assertEqual(talus_style.soil_colours(some), [whole[name] for name in some])
+        many = [f"lift{k}" for k in range(60)]
+        self.assertEqual(len(set(talus_style.soil_colours(many))), len(many))
+        self.assertEqual(len(talus_style.soil_colours([f"lift{k}" for k in range(100)])), 100)
+
     def test_a_single_cell_of_nothing_is_no_hole(self):
         owner = np.arange(400).reshape(20, 20).repeat(10, axis=0).repeat(10, axis=1)  # particles of 10 pixels
         value = np.ones(400)
