@@ -69,7 +69,7 @@ class Sheet:
         page.axis("off")
         y = self.heading(page, MARGIN, 0.5 * LINE, "Soils")
         for k, name, lines in self.soils:
-            page.add_patch(plt.Rectangle((MARGIN, y - 0.06), 0.26, 0.13, fc=model.colour(k), ec=style.SOFT, lw=0.6, hatch=None if model.there[k] else "///"))
+            page.add_patch(plt.Rectangle((MARGIN, y - 0.06), 0.26, 0.13, fc=model.colours[k], ec=style.SOFT, lw=0.6, hatch=None if model.there[k] else "///"))
             page.text(MARGIN + 0.36, y, name + ("" if model.there[k] else ", added by a stage"), va="center", fontsize=8.5, weight="bold")
             y = self.paragraph(page, MARGIN + 0.36, y + LINE, lines)
         if self.water:
@@ -133,7 +133,7 @@ def section(model):
     for body in range(len(model.bodies)):
         cells = model.corners[model.body == body]
         edge = np.linalg.norm(cells[:, 1] - cells[:, 0], axis=1).mean() / metres if len(cells) else 1  # [inch]
-        axes.add_collection(PolyCollection(cells, fc=model.colour(body), ec="#8d7b5c", lw=np.clip(5 * edge, 0.04, 0.45), zorder=2,
+        axes.add_collection(PolyCollection(cells, fc=model.colours[body], ec="#8d7b5c", lw=np.clip(5 * edge, 0.04, 0.45), zorder=2,
                                            hatch=None if model.there[body] else "///", alpha=1 if model.there[body] else 0.5), autolim=False)
         axes.add_collection(LineCollection(outline(cells), colors="#6b5a3c", linewidths=0.9, zorder=3), autolim=False)
         name_body(axes, model, cells, model.bodies[body], metres, weight="bold", fontsize=10)

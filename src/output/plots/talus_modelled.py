@@ -1,5 +1,6 @@
 """What a scene models, from the document that the program makes of it (src/simulation/model.h): in numbers, and in words."""
 
+import functools
 import json
 import pathlib
 import tomllib
@@ -36,6 +37,7 @@ class Model:
         self.terrain = pathlib.PurePath(self.scene.get("mesh", {}).get("terrain", {}).get("file", "")).name  # the file; empty where there is none
         self.keys = Keys(self.data["keys"])
         self.bodies = [body["name"] for body in self.data["bodies"]]
+        self.colours = style.soil_colours(self.bodies)
         self.there = [body["there"] for body in self.data["bodies"]]
         self.corners = np.array([cell["corners"] for cell in self.data["cells"]]).reshape(-1, 3, self.dimension)
         self.normal = np.array([cell["normal"] for cell in self.data["cells"]]).reshape(-1, self.dimension)  # of the faces in 3D
@@ -45,9 +47,6 @@ class Model:
             for k, boundary in enumerate(self.boundaries):
                 boundary.colour = style.LINES[k % len(style.LINES)]
         self.stages = self.data["stages"]
-
-    def colour(self, body):
-        return style.soil_colours(self.bodies)[body]
 
     def soil_line(self, name):
         """Law (or material of the library) and parameters of a soil: first those with symbols, then the others."""
@@ -98,7 +97,12 @@ def common_edges(first, second):
 def read_model(folder):
     """The model of a run, or None where the run has left no document of it."""
     path = folder / "run" / "model.json"
-    return Model(path.read_text()) if path.exists() else None
+    return model_of(path, path.stat().st_mtime_ns) if path.exists() else None
+
+
+@functools.lru_cache(maxsize=1)
+def model_of(path, _):
+    return Model(path.read_text())
 
 
 class Boundary:

@@ -98,7 +98,7 @@ class Views:
         model = self.model
         corners = np.concatenate([model.corners, ground])
         normal = np.concatenate([model.normal, normals_of(ground, self.up)])
-        colours = np.array([to_rgb(model.colour(body)) for body in model.body] + [to_rgb(EARTH)] * len(ground))
+        colours = np.array([to_rgb(colour) for colour in (*model.colours, EARTH)])[np.concatenate([model.body, np.full(len(ground), len(model.bodies))])]
         centres = corners.mean(axis=1)
         order = np.argsort(-camera.depth(centres))
         order = order[camera.sees(centres, normal)[order]]

@@ -51,7 +51,7 @@ class Sight:
 
     def painted(self, position, value, colours, spacing, reach=0):
         """The picture [rows, columns, 3] of a field of the particles; `reach` [pixels] as in talus_soils.painted."""
-        rgb = np.where((self.what == NOTHING)[..., None], 1.0, EARTH * self.light[..., None])
+        rgb = np.where((self.what == NOTHING)[..., None], np.float32(1), EARTH.astype(np.float32) * self.light[..., None].astype(np.float32))
         body = self.what == BODY
         fields = [value == number for number in range(len(colours.names))] or [value]  # a mean of states would be another state
         found = np.array([Filling(position, field.astype(float), spacing).at(self.place[body]) for field in fields])
@@ -60,9 +60,9 @@ class Sight:
         plain = np.ones(self.what.shape, bool)
         plain[body] = colours.plain(found)
         plain = plain[body] if colours.names else without_islands(plain, FINER * reach)[body] | ~np.isfinite(found)
-        rgb[body] = np.where(plain[:, None], SOIL, colours.map(level)[:, :3]) * self.light[body][:, None]
-        rows, columns = (count // FINER for count in self.what.shape)
-        return rgb[:rows * FINER, :columns * FINER].reshape(rows, FINER, columns, FINER, 3).mean(axis=(1, 3))
+        rgb[body] = np.where(plain[:, None], SOIL.astype(np.float32), colours.map(level, bytes=True)[:, :3] / np.float32(255)) * self.light[body][:, None]
+        rows, columns = (count // FINER * FINER for count in self.what.shape)
+        return sum(rgb[i:rows:FINER, j:columns:FINER] for i in range(FINER) for j in range(FINER)) / FINER**2
 
 
 def lightness(normal, eye):
