@@ -1,6 +1,6 @@
 #pragma once
 /// Whether the soil that slid has come to rest. Report and maps decide it in the same way (`still_moving` of
-/// src/output/plots/talus_results.py): the tests `picture_choices` and `outcomes` compare the limits and what is said.
+/// src/output/plots/talus_sliding.py): the tests `picture_choices` and `outcomes` compare the limits and what is said.
 #include <mpi.h>
 
 #include <optional>

@@ -72,7 +72,8 @@ def rows_of(path):
 
 
 def figure():
-    from talus_study import chart_of_errors, charts
+    from talus_compare import chart_of_errors
+    from talus_runs import charts
     for name in STUDIES.keys() - {"frozen", "plastic", "crossing"}:  # runs.py draws these side by side
         if (HERE / f"{name}.csv").exists():
             what, *panels = chart_of_errors(rows_of(HERE / f"{name}.csv"), rows_of(HERE / f"{name}_reference.csv")[0])

@@ -5,7 +5,7 @@ import sys
 
 import numpy as np
 
-from talus_results import Thickness, largest_displacement, still_moving
+from talus_sliding import Thickness, largest_displacement, still_moving
 from talus_units import quantity, span
 
 LIMIT = 0.5  # least thickness of soil that counts, over the size of particles: thinner soil is single particles

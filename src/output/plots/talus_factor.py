@@ -12,6 +12,7 @@ from talus_units import of_length, span
 BRIGHT = 0.97  # share of the soil that shears less than the end of the colour scale
 ARROWS = 22  # squares over the longer side of the soil, with an arrow each
 LONGEST = 1.3  # length of an arrow over the side of its square
+MECHANISM_AND_SURFACE = "mechanism and slip surface"  # name of the first picture of a factor in plane strain
 TOO_FAR = 0.2  # displacement over the height of the soil, beyond which it has no meaning, as next to a mechanism: the balance of forces alone counts; also in factor_of_safety.cpp
 FLOWS = (("own", style.LINES[0], "psi < phi"), ("associated", style.LINES[1], "psi = phi"), ("davis", style.LINES[2], "strength of Davis"), ("undrained", style.LINES[3], "no flow of pore water"))
 WATER = {True: "no flow during failure (undrained)", False: "with the pore pressure of the stage held"}
@@ -77,7 +78,7 @@ def draw_factor(results, folder):
     headline = f"Factor of safety{about_water(factor)} {in_words(factor['factor_of_safety'])}"
     pictures = [("displacement against factor", draw_displacement(factor, headline, results.title, folder / "factor_displacement.png", height_of(results)))]
     if factor["mechanisms"][0]["slip_surface_m"] and results.snapshots[-1].position().shape[1] == 2:
-        pictures.insert(0, ("mechanism and slip surface", draw_mechanism(results, factor, headline, folder / "factor_mechanism.png")))
+        pictures.insert(0, (MECHANISM_AND_SURFACE, draw_mechanism(results, factor, headline, folder / "factor_mechanism.png")))
     return pictures
 
 

@@ -104,9 +104,9 @@ def ticks_of(axes, width, height, factor=1.0):
     """As many ticks as numbers with this many digits leave room for, none so near to an end that its number passes it; `width`, `height` of the map
     [inch], `factor` of the unit of the numbers."""
     number = 0.085 * max(len(f"{factor * value:.0f}") for value in (*axes.get_xlim(), *axes.get_ylim()))  # its length [inch]
-    for axis, length, (low, high) in ((axes.xaxis, width, axes.get_xlim()), (axes.yaxis, height, axes.get_ylim())):
-        beside = 0.5 * number / length * (high - low)
-        first = int(np.clip(length / (1.4 * number + 0.2), 1, 8))
+    for axis, long, (low, high) in ((axes.xaxis, width, axes.get_xlim()), (axes.yaxis, height, axes.get_ylim())):
+        beside = 0.5 * number / long * (high - low)
+        first = int(np.clip(long / (1.4 * number + 0.2), 1, 8))
         for most in range(first, first + 3):  # two of them, if they do not touch
             ticks = MaxNLocator(most, min_n_ticks=2).tick_values(factor * low, factor * high) / factor
             inside = ticks[(ticks >= low + beside) & (ticks <= high - beside)]

@@ -15,7 +15,8 @@ from talus_deposit import LEFT_OUT, Deposit, left_mesh, metres, warn
 from talus_ground import Ground
 from talus_map_pictures import draw_map, draw_section
 from talus_qgis import add_styles, of_grid
-from talus_results import NOT_ENDED, SLOW, Results
+from talus_results import NOT_ENDED, Results
+from talus_sliding import SLOW
 from talus_units import brief, in_use, of_column, quantity, use
 from talus_way import Way
 

@@ -9,7 +9,8 @@ import typing
 import numpy as np
 
 from talus_deposit import Deposit
-from talus_results import Thickness, largest_displacement, read_factor, sliding, spacing
+from talus_results import read_factor
+from talus_sliding import Thickness, largest_displacement, sliding, spacing
 
 MEASURES = {}
 
@@ -156,7 +157,7 @@ def largest_share_displacement(results, share=0.999):
 
 
 class Slide(typing.NamedTuple):
-    """The soil that slides at the end (talus_results.sliding). In plane strain the travel distance is the level one from its rear at the start to its front at
+    """The soil that slides at the end (talus_sliding.sliding). In plane strain the travel distance is the level one from its rear at the start to its front at
     the end along the mean direction of its motion, in 3D that of the maps, from the crown to the toe of the deposit; `from_toe` is how far the front went
     beyond where it was at the start, and the fall is from the highest place at the start to the lowest of the front. The area is that of the deposit, in 3D
     alone. The depth is the largest one of the lower face below the ground, `deepest` its x, both in the undeformed section; they are known to the spacing of
@@ -217,7 +218,7 @@ def deposit(results):
 
 
 def flow(results, states=10):
-    """In 3D, of the soil that has slid by the end (talus_results.sliding), where it has left its outline at the start: the median of its thickness by volume
+    """In 3D, of the soil that has slid by the end (talus_sliding.sliding), where it has left its outline at the start: the median of its thickness by volume
     and the largest one without single particles, and the mean size of the cells where it is, over some states after the start [m]. The thick soil that stays
     in the scarp does not count, unless none went further. None where nothing slid."""
     last = results.snapshots[-1]

@@ -10,7 +10,7 @@ import numpy as np
 from talus_colours import Colours
 from talus_histories import ELSEWHERE, changes, drawn_energies
 from talus_moments import RESET, chosen_snapshots, last_reset, scaled_by
-from talus_results import sliding
+from talus_sliding import sliding
 from talus_soils import tints
 from talus_units import capital, length, readable_unit, shown, words
 from talus_views import spacing_of

@@ -9,7 +9,7 @@ import typing
 
 import numpy as np
 
-from talus_factor import about_water, factor_lines, lost_stages, short
+from talus_factor import MECHANISM_AND_SURFACE, about_water, factor_lines, lost_stages, short
 from talus_histories import base_friction
 from talus_loads import loads_at
 from talus_measures import flow, known
@@ -17,7 +17,8 @@ from talus_modelled import stage_rows
 from talus_moments import last_reset, moved_before, since
 from talus_outcomes import in_words, outcome
 from talus_play import ROWS
-from talus_results import NOT_ENDED, SLOW, largest_displacement, read_factor, sliding, still_moving
+from talus_results import NOT_ENDED, read_factor
+from talus_sliding import SLOW, largest_displacement, sliding, still_moving
 from talus_units import Keys, at_time, brief, capital, text_of, thousands, words
 from talus_workbook import write_workbook
 
@@ -58,12 +59,13 @@ class Drawn(typing.NamedTuple):
 def write_report(results, model, drawn):
     """The path of the page. `results` are those before the strength is reduced where a factor of safety was asked for."""
     css = (pathlib.Path(__file__).parent / "report.css").read_text()
-    found = key_results(results, model)
+    found, first, slide = key_results(results, model), first_picture(drawn), slide_of(drawn)
     parts = [
         header(results, model),
-        f'<div class="first">{cards([one for one in found if not of_ledgers(one)])}{first_picture(drawn.sections)}</div>',
+        f'<div class="first">{cards([one for one in found if not of_ledgers(one)])}{first}</div>',
         warnings(results),
-        section("Factor of safety", factor_block(read_factor(results), drawn.factor)),
+        section("Factor of safety", factor_block(read_factor(results), [one for one in drawn.factor if one[0] != MECHANISM_AND_SURFACE])),
+        section("Before the strength is reduced", slide if first != slide else ""),
         section("Sections", "".join(field_block(*one) for one in drawn.sections)),
         section("Histories", grid(drawn.histories), "curves"),
         section("Model", model_block(model, drawn.model)),
@@ -111,9 +113,16 @@ def header(results, model):
     return (f'<header><p class="kicker">{said[0]}</p><h1>{html.escape(results.title)}</h1><p>{said[1]}</p>{ending}</header>\n')
 
 
-def first_picture(sections):
+def first_picture(drawn):
+    """The mechanism of a factor of safety in plane strain, else the slide."""
+    if drawn.factor and drawn.factor[0][0] == MECHANISM_AND_SURFACE:
+        return f'<div class="field">{picture(drawn.factor[0][1], capital(MECHANISM_AND_SURFACE))}</div>'
+    return slide_of(drawn)
+
+
+def slide_of(drawn):
     """The slide, which the scripts play; without them its first field."""
-    return f'<div class="field" id="slide">{picture(sections[0][1], capital(words(sections[0][0])))}</div>' if sections else ""
+    return f'<div class="field" id="slide">{picture(drawn.sections[0][1], capital(words(drawn.sections[0][0])))}</div>' if drawn.sections else ""
 
 
 def of_ledgers(card):

@@ -22,6 +22,7 @@ import typing
 import h5py
 import numpy as np
 
+from talus_sliding import Thickness
 from talus_units import DAY, at_time
 
 NOT_ENDED = "it was killed, or still runs, since run.log has no end"
@@ -131,98 +132,6 @@ class Snapshot:
         return None
 
 
-SLIDES = 0.1  # share of the largest displacement beyond which soil slides
-SMALL = 0.1  # share of the spacing of particles below which the largest displacement is that of soil that stands
-
-
-def spacing(snapshot):
-    """Mean distance of neighbouring particles, by their volume [m]; 0 without particles."""
-    volume = snapshot.column("volume").values
-    return float(volume.mean()) ** (1 / snapshot.position().shape[1]) if len(volume) else 0.0
-
-
-OF_MOVED, SEVERAL = 0.05, 50
-
-
-def largest_displacement(snapshot, share=0.999):
-    """The displacement that this share of the mass has at most [m]: the largest, without single particles. Where SEVERAL particles or more moved by more
-    than their own size, single ones are no more than OF_MOVED of the mass of these: so that a small slide in a large model is none of them."""
-    moved = snapshot.scalar("displacement")[0]
-    if not len(moved):
-        return 0.0
-    try:
-        mass = snapshot.column("mass").values[:, 0]
-    except KeyError:  # results of other programs
-        mass = np.ones(len(moved))
-    single = (1 - share) * mass.sum()
-    try:
-        size = snapshot.column("volume").values[:, 0] ** (1 / snapshot.position().shape[1])
-    except KeyError:
-        size = np.inf
-    slid = moved > size
-    if slid.sum() >= SEVERAL:
-        single = min(single, OF_MOVED * mass[slid].sum())
-    order = np.argsort(moved)
-    return float(moved[order][np.searchsorted(np.cumsum(mass[order]), mass.sum() - single)])
-
-
-def sliding(last):
-    """Which particles have slid by the last snapshot: those that have moved by more than SLIDES of the largest displacement; none where this is below
-    SMALL of the spacing of particles. Whether soil slid or deformed as a whole is for talus_outcomes to say."""
-    return slides(last.scalar("displacement")[0], largest_displacement(last), spacing(last))
-
-
-def slides(displacement, largest, spacing):
-    """The same of displacements [m] of particles with this spacing."""
-    return displacement > SLIDES * largest if largest > SMALL * spacing else np.zeros(len(displacement), bool)
-
-
-# the log decides it likewise: src/simulation/still_moving.h
-SLOW = 0.1  # speed that soil at rest does not have [m/s]
-RESTLESS = 0.01  # share of the mass that slid: where more of it is faster than SLOW, it has not come to rest
-
-
-def still_moving(snapshot, numbers):
-    """The share of the soil with these numbers that is faster than SLOW, and the speed that 99.9 % of it have at most [m/s]; None where it has come to
-    rest, as at most RESTLESS of it is faster."""
-    of = np.isin(snapshot.ids(), numbers, assume_unique=True)
-    if not of.any() or "velocity" not in snapshot:
-        return None
-    speed = snapshot.scalar("velocity")[0][of]
-    mass = snapshot.column("mass").values[of, 0] if "mass" in snapshot else np.ones(len(speed))
-    share = mass[speed > SLOW].sum() / mass.sum()
-    return (float(share), float(np.quantile(speed, 0.999))) if share > RESTLESS else None
-
-
-class Thickness:
-    """The thickness of the soil that slides until the end: its volume per area on the level, in m, over a few particles. `sliding` holds the numbers of
-    the particles of this soil. Thickness is 0 for other soil."""
-
-    WIDE = 2.5  # side of the squares between which volume is shared, over the spacing of particles
-
-    def __init__(self, last, up):
-        self._level = [axis for axis in range(3) if axis != up]
-        self.sliding = last.ids()[sliding(last)]
-        self._spacing = spacing(last) or 1.0
-
-    def __call__(self, snapshot):
-        sliding = np.isin(snapshot.ids(), self.sliding, assume_unique=True)
-        thickness = np.zeros(len(sliding))
-        if sliding.any():
-            place = snapshot.position()[:, self._level]
-            low, high = place.min(axis=0) - self._spacing / 2, place.max(axis=0) + self._spacing / 2
-            count = np.maximum(2, np.round((high - low) / (self.WIDE * self._spacing)).astype(int))
-            side = (high - low) / count
-            exact = np.clip((place[sliding] - low) / side - 0.5, 0, count - 1)  # soil at the edges counts for the outermost squares
-            first = np.minimum(exact.astype(int), count - 2)
-            corners = [(np.prod(np.where(corner, exact - first, 1 - exact + first), axis=1), np.ravel_multi_index((first + corner).T, count))
-                       for corner in np.ndindex(2, 2)]
-            volume = snapshot.column("volume").values[sliding, 0]
-            held = sum(np.bincount(number, share * volume, np.prod(count)) for share, number in corners) / np.prod(side)
-            thickness[sliding] = sum(share * held[number] for share, number in corners)
-        return thickness, "m"
-
-
 def of_file(read):
     """A constructor that reads a file of results: whatever is wrong in the file is an OSError that names it."""
     @functools.wraps(read)
@@ -246,7 +155,42 @@ class Quantity(typing.NamedTuple):
     which: str
 
 
-class History:
+class Columns:
+    """`columns` of a table by their names."""
+
+    def __contains__(self, name):
+        return name in self.columns
+
+    def __getitem__(self, name):
+        """A column [rows, ...], `history["crest_displacement_m"]`. Raises KeyError with the nearest names if there is none of this name."""
+        if name not in self.columns:
+            raise unknown("column", name, self.columns)
+        return self.columns[name]
+
+    def names(self):
+        """Names of the columns beside time, stage and step; they end with their unit."""
+        return list(self.columns)
+
+
+class OverTime(Columns):
+    """The same with the `time` [s], the `stage` and, where it is known, the `step` of each row."""
+
+    step = None
+
+    def without(self, stage):
+        """The same without the rows of a stage."""
+        return self.rows(np.flatnonzero([name != stage for name in self.stage]))
+
+    def rows(self, kept):
+        """The same with these rows alone, by their numbers."""
+        other = copy.copy(self)
+        other.time, other.step = self.time[kept], None if self.step is None else self.step[kept]
+        other.stage = [self.stage[k] for k in kept]
+        other.columns = {name: values[kept] for name, values in self.columns.items()}
+        return other
+
+
+class History(OverTime):
     """history.csv: `time` [rows] in s, `stage` and `step` of each row, and columns of numbers by their names. A line that is not whole is left out,
     and `cut` says so in words. Raises OSError where the file has no rows or is damaged."""
 
@@ -287,19 +231,6 @@ class History:
             found.append(f"after {self.time[-1]:.6g} s")
         return "rows are missing " + ", ".join(found[:3]) + " and elsewhere" * (len(found) > 3) if found else ""
 
-    def __contains__(self, name):
-        return name in self.columns
-
-    def __getitem__(self, name):
-        """A column [rows], `history["crest_displacement_m"]`. Raises KeyError with the nearest names if there is none of this name."""
-        if name not in self.columns:
-            raise unknown("column", name, self.columns)
-        return self.columns[name]
-
-    def names(self):
-        """Names of the columns beside time, stage and step; they end with their unit."""
-        return list(self.columns)
-
     def unit(self, name):
         """Unit of a column, empty if it has none. Raises KeyError."""
         self[name]
@@ -310,18 +241,6 @@ class History:
         """What the columns are, as history_columns.csv beside the file says: {column: Quantity}. Raises OSError without it."""
         with open(self._path.with_name("history_columns.csv"), newline="") as file:
             return {row["column"]: Quantity(row["quantity"], row["unit"].translate(str.maketrans("23", "²³")), row["of"], row["which"]) for row in csv.DictReader(file)}
-
-    def without(self, stage):
-        """The same without the rows of a stage."""
-        return self.rows(np.flatnonzero([name != stage for name in self.stage]))
-
-    def rows(self, kept):
-        """The same with these rows alone, by their numbers."""
-        other = copy.copy(self)
-        other.time, other.step = self.time[kept], None if self.step is None else self.step[kept]
-        other.stage = [self.stage[k] for k in kept]
-        other.columns = {name: values[kept] for name, values in self.columns.items()}
-        return other
 
     def groups(self):
         """{(quantity, unit): {label: values}}; energies are one group, and so is each measure of the named points. A quantity of a boundary is one alone,
@@ -364,7 +283,7 @@ def together(values):
     return list(groups.values())
 
 
-class Escaped:
+class Escaped(Columns):
     """escaped.csv: the particles that left the mesh, in the order of time."""
 
     @of_file
@@ -381,7 +300,7 @@ class Escaped:
         self.position = np.column_stack([self.columns[f"{axis}_m"] for axis in "xyz" if f"{axis}_m" in self.columns] or [self.time])
 
 
-class Line:
+class Line(OverTime):
     """A line that was followed with the soil, line_NAME.csv: columns [times, places] by their names, `time` in s and `stage` of each time."""
 
     @of_file
@@ -400,26 +319,12 @@ class Line:
                 self.columns[name] = np.array([values[start:start + places] for start in starts])
         self.time, self.stage = times[starts], [self.stage[start] for start in starts]
 
-    def __getitem__(self, name):
-        """A column [times, places]. Raises KeyError with the nearest names."""
-        if name not in self.columns:
-            raise unknown("column", name, self.columns)
-        return self.columns[name]
-
-    def without(self, stage):
-        """The same without the rows of a stage."""
-        other = copy.copy(self)
-        kept = np.flatnonzero([name != stage for name in self.stage])
-        other.time, other.stage = self.time[kept], [self.stage[k] for k in kept]
-        other.columns = {name: values[kept] for name, values in self.columns.items()}
-        return other
-
     def moved(self):
         """Displacement of each place since the start or the last reset [m], by axis: [times, places, axes]."""
         return np.stack([self.columns[f"displacement_{axis}_m"] for axis in "xyz" if f"displacement_{axis}_m" in self.columns], axis=2)
 
 
-class Table:
+class Table(Columns):
     """A table of outcomes that `talus study`, `compare` or `converge` wrote (study.csv): columns by their names, as numbers
     [rows] where all of its entries are numbers or empty (then NaN), otherwise as text [rows]."""
 
@@ -433,18 +338,6 @@ class Table:
 
     def __len__(self):
         return len(next(iter(self.columns.values())))
-
-    def __contains__(self, name):
-        return name in self.columns
-
-    def __getitem__(self, name):
-        """A column [rows]. Raises KeyError with the nearest names."""
-        if name not in self.columns:
-            raise unknown("column", name, self.columns)
-        return self.columns[name]
-
-    def names(self):
-        return list(self.columns)
 
 
 def column(words):

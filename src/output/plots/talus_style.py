@@ -50,7 +50,7 @@ def soil_colours(names):
         while tint in taken.values() and len(taken) < TINTS:
             tint = (tint + len(GROUND)) % TINTS
         taken[name] = tint
-    return [shaded(GROUND[taken[name] % len(GROUND)], SHADE * (taken[name] // len(GROUND) - 4)) for name in names]
+    return [shaded(GROUND[taken[name] % len(GROUND)], SHADE * (taken[name] // len(GROUND) - 2)) for name in names]
 
 
 def shaded(colour, share):

@@ -4,7 +4,7 @@ import numpy as np
 
 from talus_moments import in_both
 from talus_relief import Eye
-from talus_results import slides
+from talus_sliding import slides
 from talus_tiles import GAP_IN_SPACE, tiles
 from talus_units import length, of_length
 from talus_way import Way

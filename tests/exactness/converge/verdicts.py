@@ -5,7 +5,7 @@ import unittest
 
 sys.path.insert(0, sys.argv.pop(1))
 from talus_statistics import settles  # noqa: E402
-from talus_study import judge  # noqa: E402
+from talus_compare import judge  # noqa: E402
 
 
 def rows(**columns):

@@ -17,7 +17,8 @@ PROGRAM = sys.argv.pop()
 sys.path.insert(0, subprocess.run([PROGRAM, "--python-path"], check=True, capture_output=True, text=True).stdout.strip())
 from talus_outcomes import FAILS, MOVES, STANDS, state_of, write_json  # noqa: E402
 from talus_report import key_results  # noqa: E402
-from talus_results import SLOW, Results, sliding, still_moving  # noqa: E402
+from talus_results import Results  # noqa: E402
+from talus_sliding import SLOW, sliding, still_moving  # noqa: E402
 from talus_study import UNKNOWN, state  # noqa: E402
 
 SECTION = """part,x,y

@@ -25,6 +25,9 @@ import talus_outcomes  # noqa: E402
 import talus_plot  # noqa: E402
 import talus_results  # noqa: E402
 import talus_sections  # noqa: E402
+import talus_sliding  # noqa: E402
+import talus_compare  # noqa: E402
+import talus_runs  # noqa: E402
 import talus_study  # noqa: E402
 import talus_soil  # noqa: E402
 from talus_colours import Colours  # noqa: E402
@@ -35,8 +38,10 @@ from talus_moments import chosen_snapshots, since_reset, telling, with_stress  #
 from talus_outcomes import FAILS, STANDS  # noqa: E402
 from talus_paths import grouped, label_of, name_envelopes, name_of_mean_stress  # noqa: E402
 import talus_style  # noqa: E402
+import talus_units  # noqa: E402
 from talus_report import bases, key_results, motion_at_end, ways_out  # noqa: E402
-from talus_results import MECHANISM, NOT_ENDED, History, Quantity, Results, still_moving  # noqa: E402
+from talus_results import MECHANISM, NOT_ENDED, History, Quantity, Results  # noqa: E402
+from talus_sliding import still_moving  # noqa: E402
 from talus_relief import Eye  # noqa: E402
 from talus_sections import Painter  # noqa: E402
 from talus_slip import said_of_ends, said_of_line, slip_surface  # noqa: E402
@@ -209,7 +214,7 @@ class Crosses(unittest.TestCase):
         painter._panel = lambda axes, snapshot, *_: painter._mark_escaped(axes, view, snapshot.time, 10.0)
         painter._frame_sheet = lambda *_: painter.said.append(painter.marked_escaped)
         figure = painter._sheet("velocity", None, [types.SimpleNamespace(time=time, step=1)], 1, [[0]])
-        talus_study.plt.close(figure)
+        talus_runs.plt.close(figure)
         self.assertEqual(sum(len(line.get_xdata()) for line in figure.axes[0].lines), painter.said[0])
         return painter.said[0]
 
@@ -298,7 +303,7 @@ class Labels(unittest.TestCase):
         self.assertEqual(grouped([("", "", 1.0, 0.7)], 2.0), [("strength", 0)])
 
     def test_of_envelopes_lie_along_them_and_on_no_other(self):
-        figure, axes = talus_study.plt.subplots(figsize=(5, 4))
+        figure, axes = talus_runs.plt.subplots(figsize=(5, 4))
         axes.set(xlim=(0, 56), ylim=(0, 58))
         lines = [("", "s = 0 Pa", 0.77, 2.0), ("", "s = 200 kPa", 0.78, 18.0), ("", "s = 500 kPa", 0.79, 22.5), ("", "s = 1 MPa", 0.79, 23.2)]
         name_envelopes(axes, lines)
@@ -310,14 +315,14 @@ class Labels(unittest.TestCase):
             self.assertTrue(inside.x0 < box.x0 and box.x1 < inside.x1 + 2 and box.y1 < inside.y1 + 2, (text.get_text(), box, inside))
             (x, y), (ahead, up) = axes.transData.transform([(0, 0), (1, slope)])
             self.assertAlmostEqual(text.get_rotation(), np.degrees(np.arctan2(up - y, ahead - x)), places=3)
-        talus_study.plt.close(figure)
+        talus_runs.plt.close(figure)
 
     def with_points(self, places):
         """A section from (0, 0) to (10, 10) with the names of points."""
         painter = Painter.__new__(Painter)
         history = types.SimpleNamespace(points=lambda time: {name: np.array(place) for name, place in places.items()}, way=lambda name: np.array([places[name]] * 3))
         painter.results, painter.low, painter.spacing = types.SimpleNamespace(history=history), np.zeros(2), 0.5
-        figure, axes = talus_study.plt.subplots()
+        figure, axes = talus_runs.plt.subplots()
         axes.set(xlim=(0, 10), ylim=(0, 10))
         painter._mark_points(axes, types.SimpleNamespace(aside=lambda place: [0.0], flat=lambda place: place), 0.0, 9.5)
         keep_apart(axes)
@@ -325,7 +330,7 @@ class Labels(unittest.TestCase):
         return figure, axes
 
     def test_of_points_of_a_model_do_not_cover_the_dots_of_others(self):
-        figure, axes = talus_study.plt.subplots()
+        figure, axes = talus_runs.plt.subplots()
         axes.set(xlim=(0, 50), ylim=(0, 20))
         name_of_D2 = axes.transData.transform((23.679, 8.944)) + 9 * figure.dpi / 72  # up and to the right of its dot
         points = {"D2": (23.679, 8.944), "S2": axes.transData.inverted().transform(name_of_D2)}
@@ -335,7 +340,7 @@ class Labels(unittest.TestCase):
         for text in axes.texts:
             for name, place in points.items():
                 self.assertFalse(text.get_window_extent().contains(*axes.transData.transform(place)), (text.get_text(), name))
-        talus_study.plt.close(figure)
+        talus_runs.plt.close(figure)
 
     def test_of_points_near_the_upper_edge_stand_below_them(self):
         painter = Painter.__new__(Painter)
@@ -343,31 +348,31 @@ class Labels(unittest.TestCase):
         tops = {text.get_text(): text.get_window_extent().y1 for text in axes.texts}
         self.assertLess(tops["crest"], axes.get_window_extent().y1)
         self.assertGreater(tops["toe"], axes.transData.transform((9, 2))[1])
-        talus_study.plt.close(figure)
+        talus_runs.plt.close(figure)
 
     def test_of_points_beside_each_other_do_not_cover_each_other_and_one_particle_has_one(self):
         figure, axes = self.with_points({"crest": (5.0, 5.0), "brow": (5.1, 4.9), "shoulder": (5.0, 5.0)})
         self.assertEqual([text.get_text() for text in axes.texts], ["crest, shoulder", "brow"])
         one, other = (text.get_window_extent() for text in axes.texts)
         self.assertFalse(one.overlaps(other))
-        talus_study.plt.close(figure)
+        talus_runs.plt.close(figure)
 
     def test_of_lines_have_colours_that_differ(self):
-        lines = np.array([matplotlib_colour(line) for line in talus_study.style.LINES])
+        lines = np.array([matplotlib_colour(line) for line in talus_runs.style.LINES])
         apart = [np.linalg.norm(one - other) for k, one in enumerate(lines) for other in lines[:k]]
         self.assertGreater(min(apart), 0.19)  # it was 0.17 of kinetic and dissipated energy, which looked alike
 
     def test_and_titles_keep_away_from_the_edge_and_from_the_charts(self):
         for title in ("Slope", "A title of a scene that is so long that it has no room beside the headline of the chart"):
-            figure, axes = talus_study.plt.subplots(figsize=(6, 3), layout="constrained")
+            figure, axes = talus_runs.plt.subplots(figsize=(6, 3), layout="constrained")
             axes.set_title("of the chart", loc="left")
-            talus_study.style.headline(figure, "Factor of safety", title)
+            talus_runs.style.headline(figure, "Factor of safety", title)
             figure.canvas.draw()
             inch, own = figure.dpi, axes.get_tightbbox()
             for box in (text.get_window_extent() for text in (figure._suptitle, *figure.texts) if text.get_text().strip()):
                 self.assertGreater(min(box.x0, figure.bbox.x1 - box.x1, figure.bbox.y1 - box.y1), 0.09 * inch, title)
                 self.assertGreater(box.y0, own.y1, title)
-            talus_study.plt.close(figure)
+            talus_runs.plt.close(figure)
 
 
 class Paths(unittest.TestCase):
@@ -440,7 +445,7 @@ class Reduction(unittest.TestCase):
         self.results = Results.__new__(Results)
         groups = {"0": Group(0, "", 0), "1": Group(1, "gravity", 0.07), "2": Group(1, MECHANISM, 1.3)}
         self.results._file, self.results.history, self.results.escaped = {"snapshots": groups}, None, None
-        self.results.snapshots = self.results._snapshots(groups.values())
+        self.results.snapshots = [talus_results.Snapshot(group, {}) for group in groups.values()]
         self.results.scene, self.results.bodies, self.results.folder = {}, ["clay"], pathlib.Path("nowhere")
         self.results.mesh = lambda: (np.zeros((0, 2)), np.zeros((0, 3), int))
 
@@ -491,7 +496,7 @@ class Motion(unittest.TestCase):
             snapshot = unittest.mock.MagicMock()
             snapshot.scalar, snapshot.position = lambda name: (moved, "m"), lambda: np.zeros((100_000, 3))
             snapshot.column, snapshot.__contains__ = lambda name: unittest.mock.Mock(values=columns[name]), lambda self, name: name in columns
-            return talus_results.largest_displacement(snapshot)
+            return talus_sliding.largest_displacement(snapshot)
 
         self.assertEqual(largest(60), 12.0)
         self.assertEqual(largest(40), 0.1)
@@ -501,9 +506,9 @@ class Motion(unittest.TestCase):
     def test_is_told_from_the_same_limits_by_the_program(self):
         header = (pathlib.Path(talus_plot.__file__).parents[2] / "simulation/still_moving.h").read_text()
         stated = {name: float(number) for name, number in re.findall(r"constexpr double (\w+) = ([\d.]+);", header)}
-        self.assertEqual(stated, {"slides_share": talus_results.SLIDES, "slides_least": talus_results.SMALL, "slow": talus_results.SLOW,
-                                  "restless": talus_results.RESTLESS, "nearly_all": talus_outcomes.SHARE,
-                                  "of_moved": talus_results.OF_MOVED, "several": talus_results.SEVERAL})
+        self.assertEqual(stated, {"slides_share": talus_sliding.SLIDES, "slides_least": talus_sliding.SMALL, "slow": talus_sliding.SLOW,
+                                  "restless": talus_sliding.RESTLESS, "nearly_all": talus_outcomes.SHARE,
+                                  "of_moved": talus_sliding.OF_MOVED, "several": talus_sliding.SEVERAL})
 
     def test_is_told_by_the_report(self):
         last = Moving(np.full(1000, 11.4))
@@ -535,7 +540,8 @@ class Depth(unittest.TestCase):
             snapshots.append(snapshot)
         results = Results.__new__(Results)
         results.scene = {"up": "z"}
-        results.snapshots = results._snapshots(snapshots)
+        results.snapshots = [talus_results.Snapshot(group, {}) for group in snapshots]
+        results._derive(results.snapshots)
         corner = np.stack(np.meshgrid(np.arange(0, 64, 2), np.arange(0, 12, 2), [0], indexing="ij"), axis=-1).reshape(-1, 1, 3)
         node = (corner + 2 * np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])).reshape(-1, 3).astype(float)
         results.mesh = lambda: (node, np.arange(len(node)).reshape(-1, 4))
@@ -642,7 +648,7 @@ class Resets(unittest.TestCase):
                     unittest.mock.patch("talus_lines.dimensionless", lambda results, times: None):
                 talus_lines.draw_line(results, line, "", [time[2], time[-1]])  # times before and after it
             self.assertEqual([curve.get_label().split(", ")[-1] for curve in seen[1].axes[0].lines], ["since the start", "since the end of stage gravity"])
-            talus_study.plt.close(seen[1])
+            talus_runs.plt.close(seen[1])
             seen[0].canvas.draw()
             low, high = mean.get_xlim()
             shown = [text.get_text() for at, text in zip(mean.get_xticks(), mean.get_xticklabels()) if low <= at <= high]
@@ -701,7 +707,7 @@ class Histories(unittest.TestCase):
         for flows, first in ((False, 2.0), (True, 0.0)):
             scene, seen = {"stage": [{"name": "gravity", "gravity_ramp": 1, "pore_flow": flows}, {"name": "rain"}]}, {}
             results = types.SimpleNamespace(history=history, scene=scene, snapshots=[], title="", per_metre=lambda text: text)
-            with unittest.mock.patch.object(talus_study.style, "save", lambda figure, path: seen.update({path.name: figure})):
+            with unittest.mock.patch.object(talus_runs.style, "save", lambda figure, path: seen.update({path.name: figure})):
                 draw_histories(results, pathlib.Path())
             upper = seen["water_ledger.png"].axes[0]
             gained = {line.get_label(): line for line in upper.lines}["gained"]
@@ -717,7 +723,7 @@ class Histories(unittest.TestCase):
         for resets, first in ((True, 3.0), (False, 0.0)):
             scene, seen = {"stage": [{"name": "gravity", "reset_displacement": resets}, {"name": "rain"}]}, {}
             results = types.SimpleNamespace(history=history, scene=scene, snapshots=snapshots, title="", per_metre=lambda text: text)
-            with unittest.mock.patch.object(talus_study.style, "save", lambda figure, path: seen.update({path.name: figure})):
+            with unittest.mock.patch.object(talus_runs.style, "save", lambda figure, path: seen.update({path.name: figure})):
                 draw_histories(results, pathlib.Path())
             moved, speed = (seen[f"history_{name}.png"] for name in ("displacement", "velocity"))
             self.assertEqual((moved.axes[0].lines[0].get_xdata()[0], speed.axes[0].lines[0].get_xdata()[0]), (first, 0))
@@ -732,7 +738,7 @@ class Histories(unittest.TestCase):
         history.columns = {f"{name}_{what}": np.array(way) for name, way in ways.items() for what in ("x_m", "y_m", "displacement_m")}
         history.quantities = {f"{name}_{what}_m": Quantity(what, "m", "point", name) for name in ways for what in ("x", "y", "displacement")}
         results, seen = types.SimpleNamespace(history=history, scene={}, snapshots=[], title="", per_metre=lambda text: text), []
-        with unittest.mock.patch.object(talus_study.style, "save", lambda figure, path: seen.append(figure)):
+        with unittest.mock.patch.object(talus_runs.style, "save", lambda figure, path: seen.append(figure)):
             draw_histories(results, pathlib.Path())
         self.assertEqual([text.get_text() for text in seen[0].axes[0].get_legend().get_texts()], ["crest, shoulder", "toe"])
 
@@ -1093,7 +1099,7 @@ class SlipSurface(unittest.TestCase):
                     if there:
                         np.testing.assert_allclose(drawn[name], points)
                 for sheet in sheets:
-                    talus_study.plt.close(sheet)
+                    talus_runs.plt.close(sheet)
                 if found:
                     (folder / "run.h5").touch()
                     os.utime(folder / "slip_surface.csv", (0, 0))  # the folder has another run since
@@ -1225,33 +1231,46 @@ class Charts(unittest.TestCase):
 
     def runs(self, rows, measures=()):
         """A sweep of these rows."""
-        runs = talus_study.Runs.__new__(talus_study.Runs)
+        runs = talus_runs.Runs.__new__(talus_runs.Runs)
         runs.rows, runs.title, runs.in_plane, runs.measures, runs.ended = rows, "", True, measures, [row for row in rows if not row["failure"]]
         return runs
 
     def drawn(self, picture):
         """The figure of a picture of talus_study."""
         seen = []
-        with unittest.mock.patch.object(talus_study.style, "save", lambda figure, path: seen.append(figure)):
-            talus_study.charts("", picture[0], "", *picture[1:])
+        with unittest.mock.patch.object(talus_runs.style, "save", lambda figure, path: seen.append(figure)):
+            talus_runs.charts("", picture[0], "", *picture[1:])
         seen[0].canvas.draw()
-        self.addCleanup(talus_study.plt.close, seen[0])
+        self.addCleanup(talus_runs.plt.close, seen[0])
         return seen[0]
 
     def test_outcomes_stand_against_each_key_of_its_own(self):
         rows = [{"series": key, "overrides": [], "key": key, "value": value, "unit": unit, "failure": "", "state": FAILS, "volume_of_slide_m3": volume}
                 for key, unit, values in (("body.clay.cohesion", "kPa", (6.0, 8.0)), ("body.clay.friction_angle", "deg", (20.0, 25.0)))
                 for volume, value in zip((3.0, 4.0), values)]
-        figure = self.drawn(talus_study.outcomes(self.runs(rows), {})[2]["outcomes"])
+        figure = self.drawn(talus_compare.outcomes(self.runs(rows), {})[2]["outcomes"])
         self.assertEqual([(axes.get_xlabel(), axes.get_ylabel()) for axes in figure.axes],
                          [("body.clay.cohesion [kPa]", "volume of slide [m³/m]"), ("body.clay.friction_angle [deg]", "volume of slide [m³/m]")])
-        self.assertEqual(talus_study.named("volume_of_slide_m3", False), "volume of slide [m³]")
-        self.assertEqual(talus_study.named("crest_largest_speed_m_s", True), "crest largest speed [m/s]")
+        self.assertEqual(talus_runs.named("volume_of_slide_m3", False), "volume of slide [m³]")
+        self.assertEqual(talus_runs.named("crest_largest_speed_m_s", True), "crest largest speed [m/s]")
+
+    def test_outcomes_have_the_units_of_the_scene(self):
+        rows = [{"line": "", "series": "a", "overrides": ["key=1"], "key": "key", "value": value, "unit": "", "failure": "", "state": FAILS, "travel_distance_m": 10.0 * value}
+                for value in (1.0, 2.0)]
+        talus_units.use({"output": {"units": "US"}})
+        self.addCleanup(talus_units.use, {})
+        said, _, pictures, _ = talus_compare.outcomes(self.runs(rows), {})
+        axes, = self.drawn(pictures["outcomes"]).axes
+        self.assertEqual(axes.get_ylabel(), "travel distance [ft]")
+        np.testing.assert_allclose(max(np.max(line.get_ydata()) for line in axes.lines if len(line.get_ydata())), 20 / 0.3048)
+        self.assertIn("65.62", said[-1])
+        curve = self.drawn(("", [[talus_study.exceedance({"": rows}, "travel_distance_m", [{"name": "far", "outcome": "travel_distance_m", "limit": 15.0}], 0.95, True)]])).axes[0]
+        self.assertIn(15 / 0.3048, [line.get_xdata()[0] for line in curve.lines])  # the limit is given in m, as the column is
 
     def test_a_series_over_two_keys_is_a_line_for_each_value_of_the_first(self):
         rows = [{"series": "both", "overrides": [f"body.clay.cohesion={c}", f"body.clay.friction_angle={phi}"]} for c in ("4 kPa", "8 kPa") for phi in ("15", "20")]
         for some, lines in ((rows, ["both, body.clay.cohesion=4 kPa"] * 2 + ["both, body.clay.cohesion=8 kPa"] * 2), (rows[:2], ["both"] * 2)):
-            talus_study.lines_in(some)
+            talus_compare.lines_in(some)
             self.assertEqual([row["line"] for row in some], lines)
 
     def test_energies_of_a_section_are_those_of_a_metre(self):
@@ -1262,7 +1281,7 @@ class Charts(unittest.TestCase):
         for per, unit in (("/m", "kJ/m"), ("", "kJ")):
             results = types.SimpleNamespace(history=history, scene={}, snapshots=[], title="", per_metre=lambda text, per=per: text + per)
             seen = []
-            with unittest.mock.patch.object(talus_study.style, "save", lambda figure, path: seen.append(figure)):
+            with unittest.mock.patch.object(talus_runs.style, "save", lambda figure, path: seen.append(figure)):
                 draw_histories(results, pathlib.Path())
             self.assertEqual(sorted(axes.get_ylabel() for figure in seen for axes in figure.axes), ["displacement [m]", f"energy [{unit}]"])
 
@@ -1270,7 +1289,7 @@ class Charts(unittest.TestCase):
         rows = [{"line": series, "key": key, "unit": unit, "value": value, "way": 1 + error, "error": error, "processor_s": 1.0, "pareto": 1, "failure": ""}
                 for series, key, unit in (("euler", "integrator.fraction", ""), ("arkode", "integrator.velocity_tolerance", "m/s"))
                 for value, error in ((0.1, 0.01), (0.001, 0.001))]
-        figure = self.drawn(talus_study.chart_of_errors(rows, {"uncertainty": 0.0005, "value": 1.0, "measure": "way"}))
+        figure = self.drawn(talus_compare.chart_of_errors(rows, {"uncertainty": 0.0005, "value": 1.0, "measure": "way"}))
         self.assertEqual([axes.get_xlabel().replace("\n", " ") for axes in figure.axes],
                          ["processor time [s]", *2 * ["integrator.fraction"], *2 * ["integrator.velocity_tolerance [m/s]"]])
         self.assertEqual([text.get_text() for text in figure.legends[0].get_texts()], ["euler", "arkode", "Pareto front", "reference uncertain"])
@@ -1281,7 +1300,7 @@ class Charts(unittest.TestCase):
     def test_show_no_more_named_points_than_have_room(self):
         rows = [{"series": "soil", "overrides": [], "key": "size", "value": float(size), "unit": "m", "failure": "", "state": FAILS,
                  **{f"m{n}_displacement_m": 1.0 * n * size for n in range(14)}, **{f"m{n}_largest_speed_m_s": 2.0 for n in range(14)}} for size in (1, 2)]
-        lines, _, pictures, _ = talus_study.outcomes(self.runs(rows), {})
+        lines, _, pictures, _ = talus_compare.outcomes(self.runs(rows), {})
         self.assertLess(max(map(len, lines)), 250)
         colours = [{line.get_label(): line.get_color() for line in axes.lines if line.get_label().startswith("m")} for axes in self.drawn(pictures["outcomes"]).axes]
         self.assertEqual(colours[0], colours[1])
@@ -1291,7 +1310,7 @@ class Charts(unittest.TestCase):
         for low, high in ((0.1, 1.1), (2e-4, 3e-3), (0.021, 0.048), (1, 1e3), (1e-9, 1e4), (7e4, 2e6)):
             rows = [{"line": "euler", "key": "integrator.fraction", "unit": "", "value": float(value), "way": 1 + value, "error": value, "processor_s": value, "pareto": 1, "failure": ""}
                     for value in np.geomspace(low, high, 4)]
-            for axes in self.drawn(talus_study.chart_of_errors(rows, {"uncertainty": 0.0, "value": 1.0, "measure": "way"})).axes:
+            for axes in self.drawn(talus_compare.chart_of_errors(rows, {"uncertainty": 0.0, "value": 1.0, "measure": "way"})).axes:
                 for axis, name in ((axes.xaxis, "x"), (axes.yaxis, "y")):
                     if axis.get_scale() != "log":
                         continue
@@ -1301,7 +1320,7 @@ class Charts(unittest.TestCase):
                     self.assertTrue(2 <= len(labels) <= 6, (low, high, [label.get_text() for label in labels]))
                     boxes = sorted(((box.x0, box.x1) if name == "x" else (box.y0, box.y1) for box in (label.get_window_extent() for label in labels)))
                     self.assertTrue(all(one[1] < other[0] for one, other in zip(boxes, boxes[1:])), (low, high, name, [label.get_text() for label in labels]))
-        self.assertEqual([talus_study.style.log_number(value) for value in (2e-4, 1e-5, 0.002, 50, 3e5)], ["2×10⁻⁴", "10⁻⁵", "0.002", "50", "3×10⁵"])
+        self.assertEqual([talus_runs.style.log_number(value) for value in (2e-4, 1e-5, 0.002, 50, 3e5)], ["2×10⁻⁴", "10⁻⁵", "0.002", "50", "3×10⁵"])
 
     DESIGN = {"planned": 5, "criteria": [], "confidence": 0.95}
 
@@ -1330,11 +1349,11 @@ class Charts(unittest.TestCase):
                 rows.append({"series": "wet", "overrides": [f"water.level={level}", f"c={c}"], "key": "body.clay.cohesion", "value": c, "unit": "kPa", "failure": "",
                              "state": FAILS if fails else STANDS, "load_time_of_failure_s": 1.3 if fails else None, "largest_displacement_m": 7.0 if fails else 1e-4,
                              "travel_distance_m": 43.0 if fails else 0.0})
-        figure = self.drawn(talus_study.outcomes(self.runs(rows), {})[2]["outcomes"])
+        figure = self.drawn(talus_compare.outcomes(self.runs(rows), {})[2]["outcomes"])
         ranges = {axes.get_xlim() for axes in figure.axes}
         self.assertEqual(len(ranges), 1)
         self.assertTrue(3 < next(iter(ranges))[0] < 4 and 10 < next(iter(ranges))[1] < 11, ranges)
-        said = talus_study.MARKS["never"][2]
+        said = talus_runs.MARKS["never"][2]
         self.assertEqual([list(line.get_xdata()) for line in figure.axes[0].lines if line.get_label() == said], [[4, 7, 10], [7, 10]])  # without a failure
         self.assertIn(said, [text.get_text() for text in figure.legends[0].get_texts()])
 

@@ -16,7 +16,7 @@ import talus_relief as relief  # noqa: E402
 import talus_sections  # noqa: E402
 from talus_ground import Filling, Ground  # noqa: E402
 from talus_report import level_and_upright  # noqa: E402
-from talus_results import Thickness  # noqa: E402
+from talus_sliding import Thickness  # noqa: E402
 from talus_colours import Colours  # noqa: E402
 from talus_sections import Painter  # noqa: E402
 from talus_views import Oblique  # noqa: E402

@@ -10,7 +10,7 @@ import unittest
 sys.path.insert(0, sys.argv.pop(1))
 from talus_results import History  # noqa: E402
 from talus_statistics import extrapolate  # noqa: E402
-from talus_study import Runs, measured  # noqa: E402
+from talus_runs import Runs, measured  # noqa: E402
 
 
 class References(unittest.TestCase):

@@ -4,7 +4,7 @@ import sys
 import unittest
 
 sys.path.insert(0, sys.argv.pop(1))
-import talus_study  # noqa: E402
+import talus_runs  # noqa: E402
 from talus_table import folded, lines_of  # noqa: E402
 
 ENDED = {"failure": "", "state": "fails", "load_time_of_failure_s": 13.48, "largest_displacement_m": 3.956, "travel_distance_m": 11.65,
@@ -25,7 +25,7 @@ class Tables(unittest.TestCase):
     def test_of_converge_and_compare_fit_into_80_characters(self):
         of = {"line": "cells", "key": "mesh.size", "unit": "m"}
         rows = [ENDED | of | {"value": 0.5657}, of | {"value": 0.4, "failure": CAUSE}, ENDED | of | {"value": 0.2828}]
-        lines = talus_study.table(rows, self.COLUMNS, True, 80)
+        lines = talus_runs.table(rows, self.COLUMNS, True, 80)
         self.assertLessEqual(max(map(len, lines)), 80)
         self.assertIn("room for the soil to move in", " ".join(" ".join(lines).split()))
         self.assertIn("[m³/m]", " ".join(lines))
@@ -33,13 +33,13 @@ class Tables(unittest.TestCase):
     def test_have_columns_for_lost_soil_and_warnings_where_runs_have_some(self):
         told = {"line": "cells", "key": "mesh.size", "unit": "m", "value": 0.4, "escaped_share": 0.104, "warning_count": 2}
         rows = [ENDED | told, ENDED | told | {"escaped_share": None, "warning_count": 0, "load_time_of_failure_s": None}]
-        lines = talus_study.table(rows, self.COLUMNS, True)
+        lines = talus_runs.table(rows, self.COLUMNS, True)
         self.assertEqual([line.split()[-3:] for line in lines[-2:]], [["10.4", "%", "2"], ["0", "%", "0"]])
         self.assertEqual(lines[-1].split()[3], "-")  # a time of failure
-        self.assertEqual(talus_study.losses([ENDED | {"escaped_share": 0.0, "warning_count": 0}]), {})
+        self.assertEqual(talus_runs.losses([ENDED | {"escaped_share": 0.0, "warning_count": 0}]), {})
 
     def test_measures_are_said_in_words(self):
-        self.assertEqual([talus_study.named(measure) for measure in ("max:crest_displacement_m", "toe_x_m@30", "kinetic_J")],
+        self.assertEqual([talus_runs.named(measure) for measure in ("max:crest_displacement_m", "toe_x_m@30", "kinetic_J")],
                          ["largest crest displacement [m]", "toe x [m] at 30 s", "kinetic [J]"])
 
     def test_sentences_are_folded(self):
