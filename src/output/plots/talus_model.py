@@ -171,11 +171,9 @@ def name_body(axes, model, cells, name, metres, **look):
     area = np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
     middle = (centres * area[:, None]).sum(axis=0) / area.sum()
     away = ((centres - middle) ** 2).sum(axis=1)
-    order = np.argsort(away)  # all of which lie in the body
-    nearest = [centres[order[0]]]
-    for at in centres[order[1:6000]]:
-        if len(nearest) < 400 and (np.abs(at - nearest) > 0.12 * metres).any(axis=1).all():
-            nearest.append(at)
+    order = np.argsort(away)[:6000]  # all of which lie in the body
+    _, first = np.unique(np.floor((centres[order] - middle) / (0.12 * metres)), axis=0, return_index=True)
+    nearest = centres[order[np.sort(first)[:400]]]
     movable(axes.text(*nearest[0], name, ha="center", va="center", zorder=8, path_effects=[WHITE], **look), nearest, of_soil=True)
 
 

@@ -50,8 +50,10 @@ class Snapshot:
     """One state of the run; columns are read when asked for. `derived` holds functions of the snapshot by the names of the fields that they compute:
     (values, unit)."""
 
+    _room = 64_000_000  # bytes of columns that are kept once they are read, of all snapshots
+
     def __init__(self, group, derived):
-        self._group, self._derived = group, derived
+        self._group, self._derived, self._kept = group, derived, {}
         self._before = None  # (numbers of particles, their displacement) at the state from which displacement counts
         self.time = float(group.attrs["time"])
         self.step = int(group.attrs["step"])
@@ -64,11 +66,23 @@ class Snapshot:
         """Names of the fields."""
         return [name for name in self._group if name not in ("id", "body")] + list(self._derived)
 
+    def _read(self, name):
+        """A Column of the file, which whoever asks for it may change."""
+        if name not in self._kept:
+            column = Column(self._group[name])
+            if column.values.nbytes > Snapshot._room:
+                return column
+            Snapshot._room -= column.values.nbytes
+            self._kept[name] = column
+        column = copy.copy(self._kept[name])
+        column.values = column.values.copy()
+        return column
+
     def column(self, name):
         """A field as the file has it. Raises KeyError with the nearest names if there is none of this name."""
         if name not in self._group:
             raise unknown("field", name, self.names())
-        column = Column(self._group[name])
+        column = self._read(name)
         if name == "displacement" and self._before:
             have, moved = self._before
             row = np.minimum(np.searchsorted(have, self.ids()), len(have) - 1)
@@ -101,15 +115,15 @@ class Snapshot:
 
     def position(self):
         """Where the particles are: [particles, axes] in m."""
-        return self._group["position"][...]
+        return self._read("position").values
 
     def body(self):
         """Number of each particle's body in Results.bodies: [particles]."""
-        return self._group["body"][:, 0]
+        return self._read("body").values[:, 0]
 
     def ids(self):
         """Numbers of the particles, increasing: [particles]. A particle keeps its number over the run."""
-        return self._group["id"][:, 0]
+        return self._read("id").values[:, 0]
 
     def scalar(self, name):
         """A field as one number a particle, with its unit; None if there is no such field. Of a vector it is the

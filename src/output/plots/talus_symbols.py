@@ -71,7 +71,7 @@ class Symbols:
             self.axes.plot(*points.T, color=boundary.colour, lw=1.0, **under)
             at, n, _ = along(points, normals, 1.9 * self.size)
             for centre in at + 0.42 * self.size * n:
-                self.axes.add_patch(plt.Circle(centre, 0.38 * self.size, fc="white", ec=boundary.colour, lw=0.8, zorder=6))
+                self.axes.add_artist(plt.Circle(centre, 0.38 * self.size, fc="white", ec=boundary.colour, lw=0.8, zorder=6))
         elif boundary.soil == "dashpot":
             self.axes.plot(*points.T, color=boundary.colour, lw=1.0, **under)
             self.dashpots(points, normals, boundary.colour)
