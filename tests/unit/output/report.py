@@ -1,6 +1,7 @@
 """A report in a browser without a display, as far as there is one: it loads without an error, plays, and stays small with a million particles.
 report.py PLOTS"""
 
+import base64
 import html
 import json
 import pathlib
@@ -18,7 +19,7 @@ import numpy as np
 sys.path.insert(0, sys.argv.pop())
 import talus_play  # noqa: E402
 import talus_report  # noqa: E402
-from talus_units import quantity, text_of, use  # noqa: E402
+from talus_units import in_use, of_column, quantity, text_of, use  # noqa: E402
 from talus_loads import value_at  # noqa: E402
 from talus_workbook import write_workbook  # noqa: E402
 from talus_pdf import MISSING, browser, headless, print_report  # noqa: E402
@@ -131,12 +132,25 @@ class Report(unittest.TestCase):
         elif not shutil.which("weasyprint"):
             self.assertRaisesRegex(ValueError, MISSING, print_report, path)
 
+    def test_begins_with_the_mechanism_of_a_factor_or_with_the_slide(self):
+        paths = {name: self.folder / f"{name}.png" for name in ("slide", "mechanism")}
+        for name, path in paths.items():
+            path.write_bytes(name.encode())
+        sections = [("displacement", paths["slide"], None)]
+        drawn = talus_report.Drawn(sections, [], [("mechanism and slip surface", paths["mechanism"])], None, "")
+        for one, first in ((drawn, "mechanism"), (drawn._replace(factor=[]), "slide")):
+            self.assertIn(base64.b64encode(first.encode()).decode(), talus_report.first_picture(one))
+        self.assertNotIn('id="slide"', talus_report.first_picture(drawn))
+        self.assertIn('id="slide"', talus_report.slide_of(drawn))  # which plays below
+
     def test_units_are_those_that_the_scene_asks_for(self):
         self.assertEqual(quantity(20e3, "Pa"), "20 kPa")
         use({"output": {"units": "US"}})
         try:
             self.assertEqual([quantity(of, unit, ".3g") for of, unit in ((20e3, "Pa"), (1e6, "Pa"), (0.03, "m"), (2000, "kg/m3"), (19.62e3, "N/m3"))],
                              ["418 psf", "20.9 ksf", "0.0984 ft", "125 pcf", "125 pcf"])
+            self.assertEqual([quantity(of, unit) for of, unit in ((2e3, "J/m"), (2e4, "N/m"), (15, "m³/m"))], ["449.6 ft·lbf/ft", "1.37 kip/ft", "161.5 ft³/ft"])
+            self.assertEqual(([round(in_use("m3")[0], 4), in_use("m3")[1]], of_column("crest_largest_speed_m_s")), ([35.3147, "ft³"], ("crest largest speed", "m/s")))
             self.assertEqual((text_of("7 kPa", "Pa"), text_of("1 m", "m"), text_of([[0, 1], [10, 2]], "m")), ("146.2 psf", "3.281 ft", "(0, 3.2808), (32.808, 6.5617) ft"))
         finally:
             use({})
