@@ -19,7 +19,7 @@ from talus_movie import draw_movies
 from talus_paths import draw_stress_paths
 from talus_pdf import print_report
 from talus_play import scripts
-from talus_report import Drawn, write_report
+from talus_report import Drawn, key_results, write_report
 from talus_results import NOT_ENDED, Results
 from talus_sections import section_tasks
 from talus_slip import draw_slip_surface
@@ -105,10 +105,10 @@ def draw(folder, fields=None, times=None, log=False, slip_surface=False, since=N
     if of_mechanism:
         sections += section_tasks(whole.of_reduction(), of_mechanism, times, pictures)
     model = read_model(results.folder)
-    others = [lambda: draw_histories(results, pictures), lambda: model and draw_model(model, pictures / "model.png"), lambda: scripts(results),
+    others = [lambda: draw_histories(results, pictures), lambda: model and draw_model(model, pictures / "model.png"), lambda: scripts(results), lambda: key_results(results, model),
               lambda: draw_stress_paths(results, pictures), lambda: draw_lines(results, pictures, times), lambda: draw_factor(whole, pictures)]
-    *sections, histories, modelled, played, paths, lines, factor = on_two_cores([*sections, *others])
-    report = write_report(results, model, Drawn(sections, histories + paths + lines + slip, factor, modelled, played))
+    *sections, histories, modelled, played, numbers, paths, lines, factor = on_two_cores([*sections, *others])
+    report = write_report(results, model, Drawn(numbers, sections, histories + paths + lines + slip, factor, modelled, played))
     if without:
         raise without
     return report

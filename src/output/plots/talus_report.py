@@ -46,9 +46,10 @@ PAGE = """<!doctype html>
 
 
 class Drawn(typing.NamedTuple):
-    """What a report shows: `sections` [(field, large picture, sheet of times or None)], `histories` and `factor` [(quantity, picture)], the picture of the
+    """What a report shows: the `numbers` of its cards, `sections` [(field, large picture, sheet of times or None)], `histories` and `factor` [(quantity, picture)], the picture of the
     `model` or None, and the elements by which the page plays."""
 
+    numbers: list
     sections: list
     histories: list
     factor: list
@@ -59,7 +60,7 @@ class Drawn(typing.NamedTuple):
 def write_report(results, model, drawn):
     """The path of the page. `results` are those before the strength is reduced where a factor of safety was asked for."""
     css = (pathlib.Path(__file__).parent / "report.css").read_text()
-    found, first, slide = key_results(results, model), first_picture(drawn), slide_of(drawn)
+    found, first, slide = drawn.numbers, first_picture(drawn), slide_of(drawn)
     parts = [
         header(results, model),
         f'<div class="first">{cards([one for one in found if not of_ledgers(one)])}{first}</div>',

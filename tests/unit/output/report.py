@@ -137,7 +137,7 @@ class Report(unittest.TestCase):
         for name, path in paths.items():
             path.write_bytes(name.encode())
         sections = [("displacement", paths["slide"], None)]
-        drawn = talus_report.Drawn(sections, [], [("mechanism and slip surface", paths["mechanism"])], None, "")
+        drawn = talus_report.Drawn([], sections, [], [("mechanism and slip surface", paths["mechanism"])], None, "")
         for one, first in ((drawn, "mechanism"), (drawn._replace(factor=[]), "slide")):
             self.assertIn(base64.b64encode(first.encode()).decode(), talus_report.first_picture(one))
         self.assertNotIn('id="slide"', talus_report.first_picture(drawn))
