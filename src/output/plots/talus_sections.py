@@ -110,7 +110,8 @@ class Painter:
         position = first.position()
         if isinstance(view, Oblique):
             return []
-        if position.shape[1] == 2 and len((mesh := self.results.mesh())[1]):
+        moved = getattr(self.results, "counts_since", "")  # soil that has moved is not made of whole cells
+        if position.shape[1] == 2 and not moved and len((mesh := self.results.mesh())[1]):
             return outline_of_cells(*mesh, position)
         return view.tiles(position, self._sizes(first), Frame(*corners, OUTLINE_PIXELS), outline_of_points)[0]
 
