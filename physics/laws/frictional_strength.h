@@ -20,12 +20,14 @@ struct FrictionalStrength {
   double cohesion = required;                   ///< c, peak [Pa]
   double friction_angle = required;             ///< phi, peak [rad]
   bool reads_shares = false;                    ///< c and phi of a point are shares of these
+  bool consolidates = false;                    ///< stages set the shares (SHANSEP), which are then part of the state
   double dilation_angle = 0;                    ///< psi, never above the current phi [rad]
   double residual_cohesion = -1;                ///< [Pa]; negative: the peak
   double residual_friction_angle = -degree.si;  ///< [rad]; negative: the peak
   double residual_dilation_angle = -degree.si;  ///< [rad]; negative: the peak
   double shape_factor = 0;                      ///< eta: strength falls with exp(-eta plastic_strain) [-]
   double reference_size = 0;                    ///< h_ref: eta is multiplied by h / h_ref [m]; 0: it is not
+  double residual_ratio = -1;                   ///< of c and tan(phi) to those of the peak [-]; negative: not given
 
   template <class Visitor>
   void fields(Visitor &&v) {
@@ -43,6 +45,9 @@ struct FrictionalStrength {
              "friction angle at large strain; negative: the peak value");
     v.number("residual_dilation_angle", residual_dilation_angle, degree, Range{-1, 70, {0, 35}},
              "dilation angle at large strain; negative: the peak value");
+    v.number("residual_ratio", residual_ratio, one, Range{-1, 1},
+             "c and tan(phi) at large strain over those of the peak, also where the peak is a function of place; in place "
+             "of residual_cohesion and residual_friction_angle; negative: not given");
     v.number("shape_factor", shape_factor, one, Range{0, 1e6, {0.1, 1e3, or_zero}},
              "eta: strength falls with exp(-eta plastic_strain)");
     v.number("reference_size", reference_size, metre, Range{0, 1e4, {1e-3, 50, or_zero}},
@@ -59,18 +64,21 @@ struct FrictionalStrength {
       return std::string(std::isnan(cohesion) && residual_cohesion > 0 ? "residual_cohesion"
                                                                        : "residual_friction_angle") +
              " must be 0, or negative (the peak), where the peak is a function of place: one number is no residual "
-             "value of many peaks";
+             "value of many peaks; residual_ratio gives each its own";
+    if (residual_ratio >= 0 && (residual_cohesion >= 0 || residual_friction_angle >= 0))
+      return "residual_ratio must not stand beside residual_cohesion or residual_friction_angle, whose place it takes";
     if (dilation_angle > friction_angle) return above("dilation_angle", "friction_angle", friction_angle, degree);
     if (residual_cohesion > cohesion) return above("residual_cohesion", "cohesion", cohesion, pascal);
     if (residual_friction_angle > friction_angle)
       return above("residual_friction_angle", "friction_angle", friction_angle, degree);
     if (residual_dilation_angle > dilation_angle)
       return above("residual_dilation_angle", "dilation_angle", dilation_angle, degree);
-    if ((residual_cohesion >= 0 || residual_friction_angle >= 0 || residual_dilation_angle >= 0) && shape_factor == 0)
+    const bool given = residual_cohesion >= 0 || residual_friction_angle >= 0 || residual_dilation_angle >= 0;
+    if ((given || residual_ratio >= 0) && shape_factor == 0)
       return "a residual strength needs a shape_factor above 0, the rate at which it is reached";
-    if (shape_factor > 0 && residual_cohesion < 0 && residual_friction_angle < 0 && residual_dilation_angle < 0)
+    if (shape_factor > 0 && !given && residual_ratio < 0)
       return "shape_factor must have a residual strength beside it, to which the soil softens: give residual_cohesion, "
-             "residual_friction_angle or residual_dilation_angle, or leave it out";
+             "residual_friction_angle, residual_ratio or residual_dilation_angle, or leave it out";
     if (reference_size > 0 && shape_factor == 0)
       return "reference_size must have a shape_factor beside it, which it scales; leave it out for soil that does not "
              "soften";
@@ -99,8 +107,11 @@ struct FrictionalStrength {
   static constexpr double right_angle = 90 * degree.si;  ///< [rad]
   static constexpr double unlimited = 1e100;             ///< stress of an apex that is not there [Pa]
   void prepare() {
-    residual_c = residual_cohesion < 0 ? cohesion : residual_cohesion;
-    residual_phi = residual_friction_angle < 0 ? friction_angle : residual_friction_angle;
+    const double ratio = residual_ratio < 0 ? 1 : residual_ratio;
+    residual_c = residual_cohesion < 0 ? ratio * cohesion : residual_cohesion;
+    residual_phi = residual_friction_angle >= 0 ? residual_friction_angle
+                   : residual_ratio < 0         ? friction_angle
+                                                : std::atan(ratio * std::tan(friction_angle));
     sin_psi_peak = std::sin(dilation_angle);
     sin_psi_residual = residual_dilation_angle < 0 ? sin_psi_peak : std::sin(residual_dilation_angle);
     over_size = reference_size > 0 ? 1 / reference_size : 0;

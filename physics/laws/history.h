@@ -12,6 +12,7 @@ struct HistoryField {
   const char *meaning;
   bool kept = false;       ///< part of the state: stays where a stage resets plastic strain or does not accumulate it
   bool of_tensor = false;  ///< a component that turns with the soil; results do not show it
+  bool of_stress = false;  ///< goes with the stress: accumulates in every stage
 };
 
 /// What softening reads.
@@ -23,6 +24,10 @@ inline constexpr HistoryField field_of_dilation{
     "plastic volumetric strain of soil that shears, positive in expansion; not of soil that opens at the apex or the "
     "tension cut-off",
     true};
+/// Of soil whose pore water cannot leave, behind the internal variables of its law.
+inline constexpr HistoryField field_of_excess_pressure{
+    "excess_pore_pressure", pascal,
+    "pore pressure beyond that of [water], of soil with drainage = \"undrained\"", true, false, true};
 /// History of laws that do not dilate: fluids and mu(I).
 inline constexpr std::array shear_history{field_of_plastic_strain};
 /// History of the frictional laws.

@@ -29,8 +29,19 @@ class Law {
   template <class OneLaw>
   const OneLaw *as() const;
 
+  /// The same soil if its pore water cannot leave: the stress of a point is its effective stress less an excess pore
+  /// pressure, which grows by `pore_stiffness` [Pa] times the loss of volume. The excess pressure is the last of its
+  /// internal variables. docs/theory/laws/undrained.md.
+  Law holding_water(double pore_stiffness) const;
+  /// With the drainage of another law.
+  Law drained_as(const Law &other) const;
+  /// Has a point an excess pore pressure?
+  bool holds_water() const;
+  double pore_stiffness() const;  ///< K_w / n [Pa]; 0: the water can leave for now
+
  private:
   struct Kind;
+  explicit Law(std::shared_ptr<const Kind> kind);
   std::shared_ptr<const Kind> kind_;
 };
 
@@ -46,10 +57,15 @@ int history_field(const Law &law, std::string_view name);
 /// Index among the history fields of the plastic strain that softening reads; -1 where there is none.
 int plastic_strain_field(const Law &law);
 
-double bulk_modulus(const Law &law);         ///< K [Pa]
+double bulk_modulus(const Law &law);         ///< K [Pa], with the water that cannot leave
 double shear_modulus(const Law &law);        ///< G [Pa]
 double poisson_ratio(const Law &law);        ///< nu [-]
 double constrained_modulus(const Law &law);  ///< K + 4/3 G, of the elastic wave [Pa]
+
+/// Excess pore pressure among the internal variables of a point; 0 where water can leave [Pa].
+double excess_pressure(const Law &law, const double *history);
+/// Makes the effective stress of a stress as stored. Returns the excess pore pressure [Pa].
+double make_effective(const Law &law, double *stress, const double *history);
 
 /// Does the law need a phase model with suction?
 bool reads_suction(const Law &law);
@@ -63,6 +79,8 @@ bool comes_apart(const Law &law);
 bool strength_varies(const Law &law);
 /// Do c and phi of a point follow from the shares in its surroundings?
 bool reads_shares(const Law &law);
+/// Do stages set the shares of a point, which are then part of its state?
+bool consolidates(const Law &law);
 /// May the soil become stiffer than its moduli say?
 bool stiffens(const Law &law);
 
@@ -90,7 +108,8 @@ struct LawTrouble {
 /// The first thing that went wrong inside of a law since it was read, if it can go wrong.
 LawTrouble law_trouble(const Law &law);
 
-/// Elastic energy per volume [J/m3].
+/// Elastic energy per volume [J/m3]. Of soil that holds its water, of the stress as stored: by the bulk modulus of both,
+/// which gives the energy of a change of stress whatever part of it the soil bore before.
 template <int dim>
 double elastic_energy(const Law &law, const Stress<dim> &stress);
 /// The same of a stress as stored, [stress_size] [Pa].

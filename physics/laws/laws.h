@@ -8,6 +8,7 @@
 #include "physics/laws/cam_clay.h"
 #include "physics/laws/drucker_prager.h"
 #include "physics/laws/hencky.h"
+#include "physics/laws/hoek_brown.h"
 #include "physics/laws/hysteretic.h"
 #include "physics/laws/law.h"
 #include "physics/laws/linear_elastic.h"
@@ -22,10 +23,12 @@ namespace talus {
 template <SoilLaw... OneLaw>
 using ListOfLaws = std::variant<OneLaw...>;
 using Laws = ListOfLaws<LinearElastic, MohrCoulomb, DruckerPrager, CamClay, MuI, Newtonian, Bingham, HenckyElastic,
-                        HenckyMohrCoulomb, HenckyDruckerPrager, HystereticMohrCoulomb, Umat>;
+                        HenckyMohrCoulomb, HenckyDruckerPrager, HystereticMohrCoulomb, HoekBrown, Umat>;
 
 struct Law::Kind {
   Laws law;
+  bool holds_water = false;
+  double pore_stiffness = 0;  ///< [Pa]
 };
 
 template <class OneLaw>
@@ -44,10 +47,12 @@ const OneLaw *Law::as() const {
 /// The law after change(law), which is called if it has cohesion and friction.
 template <class Change>
 Law with_changed_strength(const Law &law, const Change &change) {
-  return law.visit([&](auto one) -> Law {
-    if constexpr (FrictionalLaw<decltype(one)>) change(one);
-    return one;
-  });
+  return law
+      .visit([&](auto one) -> Law {
+        if constexpr (FrictionalLaw<decltype(one)>) change(one);
+        return one;
+      })
+      .drained_as(law);
 }
 
 }  // namespace talus

@@ -18,7 +18,7 @@ constexpr double almost_all = 0.95;  // of the fall from peak to residual streng
 }  // namespace
 
 PresentStrength::PresentStrength(const Law &law)
-    : law_(with_changed_strength(law, [](auto &one) { one.prepare(); })), known_(frictional_strength(law)) {}
+    : law_(with_changed_strength(law, [](auto &one) { one.prepare(); })), known_(frictional_strength(law) || law.as<HoekBrown>()) {}
 
 template <int dim>
 Mobilised PresentStrength::operator()(const Stress<dim> &stress, double plastic_strain,
@@ -44,6 +44,11 @@ Mobilised PresentStrength::operator()(const Stress<dim> &stress, double plastic_
       if (softens && left < almost_all) return {angle, StrengthState::softening};
       const bool yields = scale > none && one.share_of_strength(stress, plastic_strain, around) >= at_yield;
       return {angle, yields ? StrengthState::peak : StrengthState::elastic};
+    } else if constexpr (std::same_as<std::decay_t<decltype(one)>, HoekBrown>) {
+      HoekBrown rock = one;
+      rock.prepare();
+      const double share = rock.share_of_strength(stress, plastic_strain, around);
+      return {nan, share >= at_yield ? StrengthState::peak : StrengthState::elastic};
     } else {
       return {nan, StrengthState::elastic};
     }

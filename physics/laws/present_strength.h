@@ -1,5 +1,5 @@
 #pragma once
-/// The strength that a point of a frictional soil has now, how much of it the stress takes, and what has become of it.
+/// The strength that a point of a frictional soil or of Hoek-Brown's rock has now, how much of it the stress takes, and what has become of it.
 /// For results, not for the particle loop: some tenths of a microsecond a point.
 #include "physics/laws/law.h"
 
@@ -15,7 +15,7 @@ enum class StrengthState {
 
 /// Friction angle of a point that its stress mobilises, and the state of its strength.
 struct Mobilised {
-  double friction_angle;  ///< [rad]; 0 without stress, NaN where the soil has no friction
+  double friction_angle;  ///< [rad]; 0 without stress, NaN where the soil has no friction angle
   StrengthState state;
 };
 
@@ -30,7 +30,7 @@ class PresentStrength {
  public:
   explicit PresentStrength(const Law &law);
 
-  /// Has the law a cohesion and a friction angle? Otherwise it is not to be asked.
+  /// Has the law a strength that is shown? Otherwise it is not to be asked.
   bool known() const { return known_; }
   /// Of an effective stress and the plastic strain by which the law softens. The mobilised angle is that of the Mohr
   /// circle which touches an envelope through the apex of the present strength, sin(phi_m) = (s1 - s3) / (2 c cot(phi)

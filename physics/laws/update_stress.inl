@@ -155,11 +155,35 @@ void visit_case(const Law &law, Use use) {
   });
 }
 
+/// Water in the pores of a block of points that it cannot leave: their stress is effective while it is let go.
+struct HeldWater {
+  double pressure[lanes];  ///< excess over that of [water] [Pa]
+
+  template <std::size_t size>
+  void let_go(Block<size> &stress) const {
+    for (int k = 0; k < 3; ++k)
+      for (int i = 0; i < lanes; ++i) stress.value[k][i] += pressure[i];
+  }
+  template <std::size_t size>
+  void hold(Block<size> &stress) const {
+    for (int k = 0; k < 3; ++k)
+      for (int i = 0; i < lanes; ++i) stress.value[k][i] -= pressure[i];
+  }
+  template <std::size_t size>
+  void press(const Block<size> &strain, double stiffness) {
+    for (int i = 0; i < lanes; ++i)
+      pressure[i] -= stiffness * (strain.value[0][i] + strain.value[1][i] + strain.value[2][i]);
+  }
+};
+
 /// `law` is a copy, so that no store to the arrays can change it: the compiler then takes what depends on it alone out
 /// of the loop.
 template <bool strained, int dim, UpdatesStress OneLaw>
-void correct_all(OneLaw law, const StressPoints<dim> &points) {
-  constexpr int size = stress_size<dim>, memory = static_cast<int>(OneLaw::history.size());
+void correct_all(OneLaw law, const StressPoints<dim> &points, const Law &whole) {
+  constexpr int size = stress_size<dim>, own = static_cast<int>(OneLaw::history.size());
+  const bool holds_water = whole.holds_water();
+  const int memory = own + (holds_water ? 1 : 0);
+  HeldWater water{};
   law.prepare();
   const double time_step = points.time_step, no_suction = 0;
   PointBlock<dim, OneLaw> block;
@@ -196,29 +220,40 @@ void correct_all(OneLaw law, const StressPoints<dim> &points) {
       if (points.friction_share) block.friction.load(friction);
     }
     if constexpr (strained) block.strain.load(strain), block.rotation.load(rotation);
+    if (holds_water) {
+      for (int i = 0; i < lanes; ++i) water.pressure[i] = history[i][own];
+      water.let_go(block.stress);
+    }
     if (points.excess) block.show(points.averaged, excess);
     correct<strained>(law, time_step, block);
     if (points.excess) block.give_back(points.averaged);
+    if (holds_water) {
+      if constexpr (strained) water.press(block.strain, whole.pore_stiffness());
+      water.hold(block.stress);
+      for (int i = 0; i < lanes; ++i) history_out[i][own] = water.pressure[i];
+    }
     block.stress.store(stress_out), block.history.store(history_out);
   }
 }
 
 /// Point by point, with the strain as the `stress_size` variables to differentiate by.
 template <int dim, UpdatesStress OneLaw>
-void differentiate_all(OneLaw law, const StressPoints<dim> &points, double *tangent) {
-  constexpr int size = stress_size<dim>, memory = static_cast<int>(OneLaw::history.size());
+void differentiate_all(OneLaw law, const StressPoints<dim> &points, const Law &whole, double *tangent) {
+  constexpr int size = stress_size<dim>, own = static_cast<int>(OneLaw::history.size());
+  const int memory = own + (whole.holds_water() ? 1 : 0);
   using Number = Dual<size>;
   using Row = std::array<Number, size>;
   law.prepare();
   for (int p = 0; p < points.count; ++p, tangent += size * size) {
     const Increment<dim> &increment = points.increment[points.cell[p]];
     typename OneLaw::History history;
-    std::copy_n(points.history_in + p * memory, memory, history.begin());
+    std::copy_n(points.history_in + p * memory, own, history.begin());
     Row stress, strain;
     for (int k = 0; k < size; ++k) {
       stress[k] = points.stress_in[p * size + k], strain[k] = increment.strain[k];
       strain[k].slope[k] = 1;
     }
+    for (int k = 0; k < 3 && whole.holds_water(); ++k) stress[k] += points.history_in[p * memory + own];
     const Surroundings around{points.size[points.cell[p]], points.suction ? points.suction[p] : 0, points.time_step,
                               points.cohesion_share ? points.cohesion_share[p] : 1,
                               points.friction_share ? points.friction_share[p] : 1};
@@ -227,6 +262,8 @@ void differentiate_all(OneLaw law, const StressPoints<dim> &points, double *tang
                            increment.rotation);
     const Row row = std::bit_cast<Row>(s);
     for (int k = 0; k < size; ++k) std::copy_n(row[k].slope.begin(), size, tangent + k * size);
+    for (int k = 0; k < 3; ++k)
+      for (int j = 0; j < 3; ++j) tangent[k * size + j] += whole.pore_stiffness();
   }
 }
 
@@ -268,7 +305,7 @@ void call_one(const Umat &law, const StressPoints<dim> &points, int p, Stress<di
 }
 
 template <bool strained, int dim>
-void correct_all(const Umat &law, const StressPoints<dim> &points) {
+void correct_all(const Umat &law, const StressPoints<dim> &points, const Law &) {
   Stress<dim> s;
   for (int p = 0; p < points.count; ++p) {
     call_one<strained>(law, points, p, s, points.history_out + p * law.nstatv, nullptr);
@@ -277,7 +314,7 @@ void correct_all(const Umat &law, const StressPoints<dim> &points) {
 }
 
 template <int dim>
-void differentiate_all(const Umat &law, const StressPoints<dim> &points, double *tangent) {
+void differentiate_all(const Umat &law, const StressPoints<dim> &points, const Law &, double *tangent) {
   Stress<dim> s;
   std::vector<double> history(law.nstatv);
   for (int p = 0; p < points.count; ++p, tangent += stress_size<dim> * stress_size<dim>)
@@ -288,18 +325,18 @@ void differentiate_all(const Umat &law, const StressPoints<dim> &points, double 
 
 template <int dim>
 void update_stress_with_tangent(const Law &law, const StressPoints<dim> &points, double *tangent) {
-  visit_case(law, [&](const auto &one) { differentiate_all(one, points, tangent); });
+  visit_case(law, [&](const auto &one) { differentiate_all(one, points, law, tangent); });
   update_stress(law, points);
 }
 
 template <int dim>
 void update_stress(const Law &law, const StressPoints<dim> &points) {
-  visit_case(law, [&](const auto &one) { correct_all<true>(one, points); });
+  visit_case(law, [&](const auto &one) { correct_all<true>(one, points, law); });
 }
 
 template <int dim>
 void admit_stress(const Law &law, const StressPoints<dim> &points) {
-  visit_case(law, [&](const auto &one) { correct_all<false>(one, points); });
+  visit_case(law, [&](const auto &one) { correct_all<false>(one, points, law); });
 }
 
 }  // namespace talus

@@ -80,7 +80,8 @@ SoilElements<dim>::SoilElements(const BackgroundMesh<dim> &mesh, const Scene &sc
   for (size_t b = 0; b < laws.size(); ++b) {
     GaussPoints<dim> &p = points_[b];
     const StrengthByPlace strength(scene.body[b].law, p.law);
-    for (int q = 0; strength.given() && q < p.count(); ++q) {
+    if (consolidates(p.law)) p.cohesion_share.assign(p.count(), 1), p.friction_share.assign(p.count(), 1);
+    for (int q = 0; strength.given() && !consolidates(p.law) && q < p.count(); ++q) {
       const Vec<dim> &x = p.position[q];
       const auto shares = strength.shares(p.law, x[0], x[1], dim == 3 ? x[dim - 1] : 0);
       p.cohesion_share.push_back(shares.cohesion), p.friction_share.push_back(shares.friction);
@@ -339,7 +340,13 @@ void SoilElements<dim>::accept(const std::vector<double> &u, bool softening) {
   for (GaussPoints<dim> &p : points_) {
     if (!p.present) continue;
     std::copy(p.trial_stress.begin(), p.trial_stress.end(), p.stress.begin());
-    if (softening) std::copy(p.trial_history.begin(), p.trial_history.end(), p.history.begin());
+    const auto fields = history_fields(p.law);
+    if (softening)
+      std::copy(p.trial_history.begin(), p.trial_history.end(), p.history.begin());
+    else
+      for (size_t k = 0; k < fields.size(); ++k)
+        for (size_t q = k; q < p.history.size() && fields[k].of_stress; q += fields.size())
+          p.history[q] = p.trial_history[q];
     for (int q = 0; q < p.count(); ++q)
       for (int k = 0; k < components; ++k) p.total_strain[q * components + k] += p.increment[q].strain[k];
   }
@@ -409,6 +416,9 @@ void SoilElements<dim>::serialize_points(Archive &archive, GaussPoints<dim> &p) 
   column("stress of Gauss points", p.stress, components);
   column("history of Gauss points", p.history, memory);
   column("strain of Gauss points", p.total_strain, components);
+  if (!consolidates(p.law)) return;
+  column("share of cohesion of Gauss points", p.cohesion_share, 1);
+  column("share of friction of Gauss points", p.friction_share, 1);
 }
 
 template <int dim>

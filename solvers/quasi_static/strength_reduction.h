@@ -51,6 +51,8 @@ struct ReductionSettings {
   const PoreFlow<dim> *flow = nullptr;  ///< of pore water that moves, for a factor without flow too; null: none does
   /// Is strength divided at this place, in an element of this size [m]? Empty: everywhere.
   std::function<bool(const Vec<dim> &, double)> divided;
+  /// Pressure of water in a crack at this place [Pa], negative where no crack reaches. Empty: there are none.
+  std::function<double(const Vec<dim> &)> crack;
   std::function<void(double share)> tell_confined;  ///< before the trials, if `divided`: in which share of the soil
   std::function<void(const StrengthTrial &)> tell;  ///< after each trial
   /// A search found the shoulder of a mechanism, counted from 1: a share of its shear follows the soil that is held.

@@ -12,6 +12,13 @@ namespace {
 /// With the tensile strength and what suction adds to c divided by `factor`, the latter also times what Davis's
 /// strength leaves of it; c and phi come from the shares of the points. `psi` is that of the soil's own flow [rad].
 Law law_of_trial(const Law &law, double psi, double factor, TrialFlow flow) {
+  if (const HoekBrown *own = law.as<HoekBrown>()) {
+    HoekBrown one = *own;
+    one.reduce_strength(factor);
+    one.divisor = own->divisor, one.reads_shares = true;
+    if (flow != TrialFlow::own) one.dilation_angle = FrictionalStrength::right_angle;
+    return Law(one).drained_as(law);
+  }
   return with_changed_strength(with_reduced_strength(law, factor), [&](auto &one) {
     const auto &own = *law.as<std::decay_t<decltype(one)>>();
     if constexpr (std::derived_from<std::decay_t<decltype(one)>, MohrCoulomb>) {
@@ -20,13 +27,16 @@ Law law_of_trial(const Law &law, double psi, double factor, TrialFlow flow) {
     }
     one.cohesion = own.cohesion, one.friction_angle = own.friction_angle, one.reads_shares = true;
     one.dilation_angle = flow == TrialFlow::own ? psi : FrictionalStrength::right_angle;  // but never above phi
-    one.residual_cohesion = one.residual_friction_angle = one.residual_dilation_angle = -1, one.shape_factor = 0;
+    one.residual_cohesion = one.residual_friction_angle = one.residual_dilation_angle = one.residual_ratio = -1;
+    one.shape_factor = 0;
   });
 }
 
 }  // namespace
 
 bool non_associated(const Law &law) {
+  if (law.pore_stiffness() > 0) return false;
+  if (const HoekBrown *rock = law.as<HoekBrown>()) return rock->dilation_angle < FrictionalStrength::right_angle;
   const FrictionalStrength *strength = frictional_strength(law);
   return strength && strength->dilation_angle < strength->friction_angle;
 }
@@ -36,6 +46,7 @@ bool has_energy(const Law &law) {
     using Own = std::decay_t<decltype(one)>;
     if constexpr (std::same_as<Own, MohrCoulomb> || std::same_as<Own, DruckerPrager>)
       return one.dilation_angle >= one.friction_angle;
+    if constexpr (std::same_as<Own, HoekBrown>) return one.dilation_angle >= FrictionalStrength::right_angle;
     return std::same_as<Own, LinearElastic>;
   });
 }
@@ -59,6 +70,15 @@ TrialStrength<dim>::TrialStrength(SoilElements<dim> &soil, BaseContact<dim> &bas
     OfBody &body = bodies_.emplace_back();
     body.law = p.law, body.cohesion_share = p.cohesion_share, body.friction_share = p.friction_share;
     body.divisor.assign(p.count(), 0);
+    if (laws[b].pore_stiffness() > 0) {
+      body.undrained = undrained_strength<dim>(p, laws[b], [](int) { return false; });
+      continue;
+    }
+    if (const HoekBrown *rock = laws[b].as<HoekBrown>()) {
+      const auto drained = [](int) { return true; };
+      body.own = undrained_strength<dim>(p, laws[b], drained);
+      for (FrictionalPoint &one : body.own) one.psi = std::min(one.phi, rock->dilation_angle);
+    }
     if (!frictional_strength(laws[b])) continue;
     FrictionalStrength strength = *frictional_strength(laws[b]);
     strength.prepare();
@@ -81,9 +101,55 @@ void TrialStrength<dim>::restore() {
   bases_.let_go();
   for (size_t b = 0; b < bodies_.size(); ++b) {
     GaussPoints<dim> &p = soil_.points()[b];
+    const OfBody &body = bodies_[b];
+    if (body.cracks && !body.law.holds_water()) {  // without the room for the water
+      const size_t whole = history_size(p.law), own = whole - 1;
+      std::vector<double> history;
+      for (size_t k = 0; k < p.history.size(); ++k)
+        if (k % whole < own) history.push_back(p.history[k]);
+      p.history = p.trial_history = history;
+    } else if (body.cracks) {
+      const size_t whole = history_size(p.law);
+      for (size_t k = whole - 1; k < p.history.size(); k += whole) p.history[k] = body.history[k];
+    }
     p.law = bodies_[b].law;
     p.cohesion_share = bodies_[b].cohesion_share, p.friction_share = bodies_[b].friction_share;
   }
+}
+
+/// The water of a crack bears a part of the stress at its points: the law sees no tension beyond its pressure.
+template <int dim>
+void TrialStrength<dim>::crack(const std::function<double(const Vec<dim> &)> &water) {
+  for (size_t b = 0; b < bodies_.size(); ++b) {
+    GaussPoints<dim> &p = soil_.points()[b];
+    OfBody &body = bodies_[b];
+    int reached = 0;
+    for (int q = 0; p.present && q < p.count(); ++q) reached = reached || water(p.position[q]) >= 0;
+    MPI_Allreduce(MPI_IN_PLACE, &reached, 1, MPI_INT, MPI_MAX, soil_.nodes().comm());
+    if (!reached || never_fails(laws_[b])) continue;
+    body.cracks = true, body.history = p.history;
+    const size_t own = history_size(p.law) - (p.law.holds_water() ? 1 : 0), was = history_size(p.law);
+    std::vector<double> history;
+    for (int q = 0; q < p.count(); ++q) {
+      for (size_t k = 0; k < own; ++k) history.push_back(p.history[q * was + k]);
+      history.push_back(std::max(0., water(p.position[q])));
+    }
+    p.history = p.trial_history = history;
+    p.law = p.law.holding_water(0);
+  }
+}
+
+template <int dim>
+void TrialStrength<dim>::open_cracks(size_t b) {
+  GaussPoints<dim> &p = soil_.points()[b];
+  Law law = with_changed_strength(p.law, [](auto &one) {
+    if constexpr (std::derived_from<std::decay_t<decltype(one)>, MohrCoulomb>) one.tension_cutoff = 0;
+  });
+  if (const HoekBrown *rock = p.law.template as<HoekBrown>()) {
+    HoekBrown cracked = *rock;
+    cracked.tension_cutoff = 0, law = cracked;
+  }
+  p.law = law.holding_water(0);
 }
 
 template <int dim>
@@ -122,7 +188,8 @@ PetscErrorCode TrialStrength<dim>::hold(const CellSet &cells, double divisor) {
 
 template <int dim>
 void TrialStrength<dim>::take_undrained(const std::vector<std::vector<FrictionalPoint>> &strength) {
-  for (size_t b = 0; b < bodies_.size(); ++b) bodies_[b].undrained = strength[b];
+  for (size_t b = 0; b < bodies_.size(); ++b)
+    if (laws_[b].pore_stiffness() == 0) bodies_[b].undrained = strength[b];
 }
 
 template <int dim>
@@ -132,21 +199,24 @@ void TrialStrength<dim>::set(double factor, TrialFlow flow) {
     GaussPoints<dim> &p = soil_.points()[b];
     const OfBody &body = bodies_[b];
     const auto divisor = [&](int q) { return body.divisor[q] > 0 ? body.divisor[q] : factor; };
-    if (flow == TrialFlow::undrained) {
+    if (flow == TrialFlow::undrained || laws_[b].pore_stiffness() > 0) {
       std::vector<FrictionalPoint> divided;
       for (int q = 0; q < static_cast<int>(body.undrained.size()); ++q)
         divided.push_back(strength_of_trial(body.undrained[q], divisor(q), flow));
       put_strength(divided, p);
+      if (body.cracks) open_cracks(b);
       continue;
     }
     p.law = law_of_trial(laws_[b], body.psi, body.kept ? 1 : factor, flow);
-    const FrictionalStrength *whole = frictional_strength(laws_[b]);
-    if (!whole) continue;
+    if (body.cracks) open_cracks(b);
+    if (body.own.empty()) continue;
+    const FrictionalStrength *whole = frictional_strength(laws_[b]);  // null: rock, whose share is that of its tangent
     const auto share = [](double part, double of) { return of > 0 ? part / of : 1; };
     p.cohesion_share.resize(p.count()), p.friction_share.resize(p.count());
     for (int q = 0; q < p.count(); ++q) {
       const FrictionalPoint now = strength_of_trial(body.own[q], divisor(q), flow);
-      p.cohesion_share[q] = share(now.c, whole->cohesion), p.friction_share[q] = share(now.phi, whole->friction_angle);
+      p.cohesion_share[q] = share(now.c, whole ? whole->cohesion : body.own[q].c);
+      p.friction_share[q] = whole ? share(now.phi, whole->friction_angle) : 1;
     }
   }
 }

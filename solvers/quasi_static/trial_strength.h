@@ -24,7 +24,8 @@ bool has_energy(const Law &law);
 
 /// While it exists the soil has the strength of trials: each point that which its place and its plastic strain left it,
 /// divided by the factor of the trial or by a number of its own, and so have the bases. Trials do not soften soil. What
-/// suction adds to the cohesion, and tensile strength, are divided alike in all of a body.
+/// suction adds to the cohesion, and tensile strength, are divided alike in all of a body. Of Hoek-Brown's rock the
+/// shear strength of each normal stress is divided, and `davis` takes phi at the stress with which trials begin.
 template <int dim>
 class TrialStrength {
  public:
@@ -38,6 +39,9 @@ class TrialStrength {
   /// Strength is divided by the factor of the trial only where `divided(place, element size)`; elsewhere it is the
   /// soil's own. Returns the share of the soil where it is divided. Collective.
   double confine(const std::function<bool(const Vec<dim> &, double)> &divided);
+  /// Lets soil above a line crack: bodies of which a part lies there bear no tension, and at a place with a crack no less
+  /// than `water`(place), the pressure of the water in it; negative where there is none. Undone by `restore`. Collective.
+  void crack(const std::function<double(const Vec<dim> &)> &water);
   /// Strength of these cells, and of the bases under them, is divided by `divisor` in all trials from now on.
   /// Collective.
   PetscErrorCode hold(const CellSet &cells, double divisor);
@@ -46,12 +50,17 @@ class TrialStrength {
   void set(double factor, TrialFlow flow);
 
  private:
+  void open_cracks(size_t body);
+
   struct OfBody {
     std::vector<FrictionalPoint> own;        ///< of points; none where the law has no such strength
-    std::vector<FrictionalPoint> undrained;  ///< likewise, without flow of the pore water
+    std::vector<FrictionalPoint> undrained;  ///< likewise, without flow of the pore water: in `undrained` trials, and in
+                                             ///< all of soil that holds its water
     std::vector<double> divisor;             ///< of points; 0: that of the trial
     double psi = 0;                          ///< mean of its points, by volume [rad]
     bool kept = false;                       ///< no trial divides its strength
+    bool cracks = false;                     ///< it bears no tension, and holds the water of its cracks
+    std::vector<double> history;             ///< without that water
     Law law;                                 ///< with which the points came, and their shares
     std::vector<double> cohesion_share, friction_share;
   };

@@ -11,17 +11,16 @@
 namespace talus {
 namespace {
 
+/// Mean stress of Mohr's circle, in the plane or of the largest and the least, positive in compression [Pa].
+double mean_of_circle(const Stress<2> &stress) { return -(stress.xx + stress.yy) / 2; }
+double mean_of_circle(const Stress<3> &stress) {
+  const Principal<> s = PrincipalAxes<3>(stress).values();
+  return -(s.s1 + s.s3) / 2;
+}
 /// s_u where the mean stress of the law's own measure stays what it is [Pa].
 template <int dim>
 double shear_strength(const MohrCoulomb &, const FrictionalStrength::Faded<double> &own, const Stress<dim> &stress) {
-  double mean;  // compression positive
-  if constexpr (dim == 2) {
-    mean = -(stress.xx + stress.yy) / 2;
-  } else {
-    const Principal<> s = PrincipalAxes<dim>(stress).values();
-    mean = -(s.s1 + s.s3) / 2;
-  }
-  return std::max(0., own.c * std::cos(own.phi) + mean * std::sin(own.phi));
+  return std::max(0., own.c * std::cos(own.phi) + mean_of_circle(stress) * std::sin(own.phi));
 }
 template <int dim>
 double shear_strength(const DruckerPrager &law, const FrictionalStrength::Faded<double> &own,
@@ -34,43 +33,71 @@ double shear_strength(const DruckerPrager &law, const FrictionalStrength::Faded<
 }  // namespace
 
 template <int dim>
+std::vector<FrictionalPoint> undrained_strength(const GaussPoints<dim> &p, const Law &whole,
+                                                const std::function<bool(int)> &drains) {
+  constexpr int components = stress_size<dim>;
+  std::vector<FrictionalPoint> all;
+  const int field = plastic_strain_field(whole), size = history_size(whole);
+  const auto effective_stress = [&](int q) {
+    Stress<dim> stress;
+    std::copy_n(&p.stress[q * components], components, &stress.xx);
+    const double excess = excess_pressure(whole, &p.history[q * size]);
+    stress.xx += excess, stress.yy += excess, stress.zz += excess;
+    return stress;
+  };
+  whole.visit([&](auto law) {
+    if constexpr (FrictionalLaw<decltype(law)>) {
+      law.prepare();
+      for (int q = 0; q < p.count(); ++q) {
+        Surroundings around{p.size[q]};
+        if (!p.cohesion_share.empty()) around.cohesion = p.cohesion_share[q];
+        if (!p.friction_share.empty()) around.friction = p.friction_share[q];
+        if (!p.suction.empty()) around.suction = p.suction[q];
+        const auto own = law.present(p.history[q * size + field], around);
+        all.push_back(drains(q) ? FrictionalPoint{own.c, own.phi, own.phi}
+                                : FrictionalPoint{shear_strength<dim>(law, own, effective_stress(q)), 0, 0});
+      }
+    } else if constexpr (std::same_as<decltype(law), HoekBrown>) {
+      law.prepare();
+      for (int q = 0; q < p.count(); ++q) {
+        const Stress<dim> stress = effective_stress(q);
+        const auto [c, phi] = law.line_at(PrincipalAxes<dim>(stress).values().s1);
+        all.push_back(drains(q) ? FrictionalPoint{c, phi, phi}
+                                : FrictionalPoint{law.radius_at(mean_of_circle(stress)), 0, 0});
+      }
+    }
+  });
+  return all;
+}
+
+template <int dim>
 std::vector<std::vector<FrictionalPoint>> undrained_strength(const SoilElements<dim> &soil, const PoreFlow<dim> &flow,
                                                              const std::vector<Law> &laws) {
-  constexpr int components = stress_size<dim>;
-  std::vector<std::vector<FrictionalPoint>> all(laws.size());
+  std::vector<std::vector<FrictionalPoint>> all;
   for (size_t b = 0; b < laws.size(); ++b) {
     const GaussPoints<dim> &p = soil.points()[b];
-    const auto find = [&](auto law) {
-      if constexpr (FrictionalLaw<decltype(law)>) {
-        law.prepare();
-        const int field = plastic_strain_field(laws[b]), size = history_size(laws[b]);
-        for (int q = 0; q < p.count(); ++q) {
-          Surroundings around{p.size[q]};
-          if (!p.cohesion_share.empty()) around.cohesion = p.cohesion_share[q];
-          if (!p.friction_share.empty()) around.friction = p.friction_share[q];
-          if (!p.suction.empty()) around.suction = p.suction[q];
-          const auto own = law.present(p.history[q * size + field], around);
-          const auto &l = soil.rule().point[q - soil.first_point(p.cell[q])];
-          const bool drains = !flow.active(p.cell[q]) || flow.saturation(p.cell[q], l) < 1;
-          Stress<dim> stress;
-          std::copy_n(&p.stress[q * components], components, &stress.xx);
-          all[b].push_back(drains ? FrictionalPoint{own.c, own.phi, own.phi}
-                                  : FrictionalPoint{shear_strength<dim>(law, own, stress), 0, 0});
-        }
-      }
-    };
-    laws[b].visit(find);
+    all.push_back(undrained_strength<dim>(p, laws[b], [&](int q) {
+      const auto &l = soil.rule().point[q - soil.first_point(p.cell[q])];
+      return !flow.active(p.cell[q]) || flow.saturation(p.cell[q], l) < 1;
+    }));
   }
   return all;
 }
 
 template <int dim>
 void put_strength(const std::vector<FrictionalPoint> &strength, GaussPoints<dim> &points) {
-  if (!frictional_strength(points.law)) return;
+  if (strength.empty()) return;
+  const Law &law = points.law;
+  if (const HoekBrown *rock = law.as<HoekBrown>()) {
+    MohrCoulomb tangents;
+    static_cast<IsotropicElastic &>(tangents) = *rock;
+    points.law = Law(tangents).drained_as(law);
+  }
   constexpr double c = 1, phi = FrictionalStrength::right_angle / 2;
   points.law = with_changed_strength(points.law, [](auto &law) {
     law.cohesion = c, law.friction_angle = phi, law.reads_shares = true;
-    law.residual_cohesion = law.residual_friction_angle = law.residual_dilation_angle = -1, law.shape_factor = 0;
+    law.residual_cohesion = law.residual_friction_angle = law.residual_dilation_angle = law.residual_ratio = -1;
+    law.shape_factor = 0;
     if constexpr (std::derived_from<std::decay_t<decltype(law)>, MohrCoulomb>)
       law.tension_cutoff = -1, law.suction_cohesion = law.suction_cohesion_rate = law.suction_friction_rate = 0;
     law.dilation_angle = FrictionalStrength::right_angle;  // that is phi, which it cannot exceed
@@ -102,6 +129,10 @@ PetscErrorCode find_undrained_failure(QuasiStatic<dim> &problem, PoreFlow<dim> &
   PetscFunctionReturn(0);
 }
 
+template std::vector<FrictionalPoint> undrained_strength(const GaussPoints<2> &, const Law &,
+                                                         const std::function<bool(int)> &);
+template std::vector<FrictionalPoint> undrained_strength(const GaussPoints<3> &, const Law &,
+                                                         const std::function<bool(int)> &);
 template std::vector<std::vector<FrictionalPoint>> undrained_strength(const SoilElements<2> &, const PoreFlow<2> &,
                                                                       const std::vector<Law> &);
 template std::vector<std::vector<FrictionalPoint>> undrained_strength(const SoilElements<3> &, const PoreFlow<3> &,

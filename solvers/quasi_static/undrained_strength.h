@@ -5,9 +5,12 @@
 
 namespace talus {
 
-/// Strength of the Gauss points of each body, as trials divide it: c = s_u and phi = 0 where pores are full, and the
-/// soil's own c and phi elsewhere, with psi = phi. None where the law has no such strength. `laws` are those of the
-/// bodies.
+/// Strength of the Gauss points of a body of this law, as trials divide it: c = s_u and phi = 0, and the soil's own c and
+/// phi where `drains(point)`, with psi = phi. None where the law has no such strength.
+template <int dim>
+std::vector<FrictionalPoint> undrained_strength(const GaussPoints<dim> &points, const Law &law,
+                                                const std::function<bool(int)> &drains);
+/// That of each body whose full pores do not drain. `laws` are those of the bodies.
 template <int dim>
 std::vector<std::vector<FrictionalPoint>> undrained_strength(const SoilElements<dim> &soil, const PoreFlow<dim> &flow,
                                                              const std::vector<Law> &laws);

@@ -13,7 +13,7 @@ inline constexpr std::string_view doubt_names =
     " energy_ratio"
     " excess exponent failure_speed failure_time floor force_ratio fraction friction_angle gas_permeability"
     " grain_density grain_size gravity ground_damping ground_frequency heat_capacity high_pass hydraulic_conductivity"
-    " inertial_number inflow intensity iterations k0 largest_speed limit limiting_friction load_steps mean_pressure"
+    " geological_strength_index inertial_number inflow intact_constant intact_strength intensity iterations k0 largest_speed limit limiting_friction load_steps mean_pressure"
     " overconsolidation_ratio particles_per_cell"
     " peak permeability pic_fraction plasticity_index poisson_ratio"
     " pore_pressure_ratio pore_size_index porosity preconsolidation_pressure pressure reference_size"

@@ -390,6 +390,14 @@ class Checks {
     }
     if (search.width > 0 && search.along.empty())
       reader_.complain("factor_of_safety.width", "has no effect without the line factor_of_safety.along");
+    if (search.crack_water > FactorSource::no_water && search.tension_crack.empty())
+      reader_.complain("factor_of_safety.crack_water", "has no effect without the line factor_of_safety.tension_crack");
+    for (std::size_t i = 0; i < search.tension_crack.size(); ++i) {
+      components("factor_of_safety.tension_crack", search.tension_crack[i].size(), 2, "coordinates in each point");
+      if (search.tension_crack.size() < 2 || (i > 0 && search.tension_crack[i][0] <= search.tension_crack[i - 1][0]))
+        reader_.complain("factor_of_safety.tension_crack",
+                         "must be two or more points [x, elevation] whose x rises from each to the next");
+    }
   }
 
   /// A polygon (closed) or a line whose sides do not cross one another.

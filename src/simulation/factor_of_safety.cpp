@@ -43,7 +43,7 @@ void check_strength(const World<dim> &world) {
   for (size_t b = 0; b < world.laws.size(); ++b) {
     const StrengthRange &range = world.strength[b];
     divided += is_divided(b);
-    if (is_divided(b) && range.cohesion[1] == 0 && range.friction_angle[1] == 0 && !reads_suction(world.laws[b]))
+    if (is_divided(b) && frictional_strength(world.laws[b]) && range.cohesion[1] == 0 && range.friction_angle[1] == 0 && !reads_suction(world.laws[b]))
       without.push_back(b);
   }
   if (!without.empty() && without.size() == divided)
@@ -54,7 +54,7 @@ void check_strength(const World<dim> &world) {
     if (!reason.empty() && (!never_fails(world.laws[b]) || !some_fail))
       world.scene.complain("body." + world.scene.body[b].name + ".law",
                            "must have a strength that a factor of safety can divide, but " + law + " " + reason +
-                               "; take mohr_coulomb or drucker_prager");
+                               "; take mohr_coulomb, drucker_prager or hoek_brown");
   }
 }
 
@@ -264,11 +264,17 @@ void FactorStage<dim>::run() {
   run_.write_checkpoint();
 }
 
+/// The last stage that was no search for a factor.
+template <int dim>
+const Stage *FactorStage<dim>::stage_before() const {
+  return &*std::find_if_not(std::make_reverse_iterator(run_.scene.stage.begin() + run_.progress.number),
+                            run_.scene.stage.rend(), std::mem_fn(&Stage::finds_factor));
+}
+
 /// The problem is in the state of the stage before; a run that was resumed since has still to bring it under the loads.
 template <int dim>
 void FactorStage<dim>::begin() {
-  const auto before = std::find_if_not(std::make_reverse_iterator(run_.scene.stage.begin() + run_.progress.number),
-                                       run_.scene.stage.rend(), std::mem_fn(&Stage::finds_factor));
+  const Stage *before = stage_before();
   run_.clock.stage = stage_.name;
   run_.recorder.begin_stage(stage_);
   if (run_.options.resume) {
@@ -315,6 +321,15 @@ FactorOfSafety FactorStage<dim>::search() {
     settings.divided = [&, vertical = run_.scene.vertical()](const Vec<dim> &x, double size) {
       return region.holds(x[0], x[vertical], size);
     };
+  const TensionCrack crack(*run_.scene.factor_of_safety);
+  if (crack.given()) {
+    const double weight = run_.scene.water->density * run_.scene.gravity_size();
+    settings.crack = [&crack, weight, vertical = run_.scene.vertical()](const Vec<dim> &x) {
+      return crack.reaches(x[0], x[vertical]) ? weight * crack.head(x[vertical]) : -1;
+    };
+    run_.recorder.note(std::string("soil above factor_of_safety.tension_crack cracks: its bodies bear no tension") +
+                       (crack.wet() ? ", and water stands in the cracks" : ""));
+  }
   settings.tell_confined = [&](double share) {
     if (share == 0)
       run_.scene.complain(
@@ -334,7 +349,15 @@ FactorOfSafety FactorStage<dim>::search() {
                        {{"factor", t.factor}, {"displacement_m", t.displacement}});
     tables.add(t);
   };
-  require(reduce_strength<dim>(run_.statics.problem(), world.laws, settings, &result, &stopped));
+  std::vector<Law> laws;
+  for (size_t b = 0; b < world.laws.size(); ++b) {
+    laws.push_back(run_.statics.law_in(*stage_before(), b));
+    if (laws[b].pore_stiffness() > 0 && *no_strength_reduction(laws[b]) == 0)
+      run_.recorder.note("body." + run_.scene.body[b].name +
+                         " is undrained: its strength is that of its effective stress at the end of the stages, which "
+                         "does not change while it fails, s_u = c cos(phi) + s' sin(phi)");
+  }
+  require(reduce_strength<dim>(run_.statics.problem(), laws, settings, &result, &stopped));
   result.lost_stages = run_.statics.lost_stages;
   if (stopped) throw RunFailure("interrupted");
   if (result.lower == 0 || result.upper == 0) throw RunFailure(why_open(result, !region.everywhere()));

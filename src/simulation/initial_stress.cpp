@@ -43,6 +43,7 @@ void Statics<dim>::start_stress() {
   for (size_t b = 0; b < world_.bodies.size(); ++b) {
     GaussPoints<dim> &points = problem_->soil().points()[b];
     if (!world_.present[b]) continue;
+    if (points.law.holds_water()) let_water_go(points);
     for (int q = 0; q < points.count(); ++q) {
       const Vec<dim> &x = points.position[q];
       Vec<dim> surface = x;

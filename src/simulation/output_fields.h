@@ -57,6 +57,7 @@ struct ParticleState {
       surface = pores.surface;
       porosity = 1 - mass / (source.grain_density() * volume);
     }
+    pore_pressure += make_effective(source.law(), stress.data(), history.data());
   }
 };
 

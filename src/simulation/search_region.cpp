@@ -2,11 +2,28 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "meshes/polygon.h"
 #include "scene/factor_source.h"
 
 namespace talus {
+
+TensionCrack::TensionCrack(const FactorSource &search) : water_(search.crack_water) {
+  for (const auto &point : search.tension_crack) line_.push_back({point[0], point[1]});
+}
+
+bool TensionCrack::wet() const { return water_ > FactorSource::no_water; }
+
+bool TensionCrack::reaches(double x, double elevation) const {
+  for (std::size_t i = 0; i + 1 < line_.size(); ++i) {
+    const auto &[a, b] = std::pair{line_[i], line_[i + 1]};
+    if (a[0] <= x && x <= b[0]) return elevation > a[1] + (b[1] - a[1]) * (x - a[0]) / (b[0] - a[0]);
+  }
+  return false;
+}
+
+double TensionCrack::head(double elevation) const { return std::max(0., water_ - elevation); }
 
 SearchRegion::SearchRegion(const FactorSource &search) : width_(search.width) {
   for (const auto &point : search.within) polygon_.push_back({point[0], point[1]});

@@ -8,6 +8,22 @@ namespace talus {
 
 struct FactorSource;
 
+/// Cracks in the soil above a line, and the water in them.
+class TensionCrack {
+ public:
+  explicit TensionCrack(const FactorSource &search);
+  bool given() const { return !line_.empty(); }
+  bool wet() const;
+  /// Is a point above the line?
+  bool reaches(double x, double elevation) const;
+  /// By how much water stands above a point in a crack [m].
+  double head(double elevation) const;
+
+ private:
+  std::vector<Vec<2>> line_;
+  double water_;  ///< [m]
+};
+
 class SearchRegion {
  public:
   explicit SearchRegion(const FactorSource &search);

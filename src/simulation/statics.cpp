@@ -10,6 +10,7 @@
 #include "output/replace_file.h"
 #include "output/together.h"
 #include "physics/boundary/boundary.h"
+#include "physics/laws/drainage.h"
 #include "physics/pores/soil_pores.h"
 #include "scene/body_source.h"
 #include "scene/boundary_source.h"
@@ -144,13 +145,35 @@ double Statics<dim>::strain_energy() const {
   return energy;
 }
 
+/// Excess pore pressure is gone, so that the effective stress is all.
+template <int dim>
+void Statics<dim>::let_water_go(GaussPoints<dim> &points) {
+  const int memory = history_size(points.law);
+  for (int q = 0; q < points.count(); ++q) {
+    make_effective(points.law, &points.stress[q * stress_size<dim>], &points.history[q * memory]);
+    points.history[(q + 1) * memory - 1] = 0;
+  }
+}
+
+template <int dim>
+Law Statics<dim>::law_in(const Stage &stage, size_t body) const {
+  const Law &law = world_.laws[body];
+  if (!law.holds_water()) return law;
+  const std::vector<std::string> drained_in = read_drainage(world_.scene.body[body].law).drained_in;
+  return std::ranges::count(drained_in, stage.name) ? law.holding_water(0) : law;
+}
+
 template <int dim>
 void Statics<dim>::choose_laws(const Stage &stage) {
   for (size_t b = 0; b < world_.laws.size(); ++b) {
     GaussPoints<dim> &points = problem_->soil().points()[b];
-    points.law = world_.laws[b];
+    points.law = law_in(stage, b);
+    if (points.law.holds_water() && points.law.pore_stiffness() == 0) let_water_go(points);
     // steps are large here: strength would fall within one, though it is not remembered
-    int sheared = std::any_of(points.history.begin(), points.history.end(), [](double h) { return h != 0; });
+    const auto fields = history_fields(points.law);
+    int sheared = 0;
+    for (size_t k = 0; k < points.history.size(); ++k)
+      sheared = sheared || (points.history[k] != 0 && !fields[k % fields.size()].of_stress);
     MPI_Allreduce(MPI_IN_PLACE, &sheared, 1, MPI_INT, MPI_MAX, world_.comm);
     if (!stage.softening && !sheared) points.law = without_softening(points.law);
   }
@@ -268,13 +291,11 @@ std::vector<double> Statics<dim>::inflow() const {
                              world_.phases.liquid ? std::numeric_limits<double>::quiet_NaN() : 0);
 }
 
-/// Stress is linear between the Gauss points of a cell; history too, but not beyond what the points have: strength must
-/// not grow. Nor does stress go beyond them where it is `between`: what soil bears at all of them, it bears there.
+/// Of the Gauss points of a cell in a value at a place that is linear between them; if `between`, none is negative.
 template <int dim>
-void Statics<dim>::interpolate(int cell, const Barycentric<dim> &l, bool between, double *stress,
-                               double *history) const {
+std::array<double, dim + 1> Statics<dim>::weights_of_points(const Barycentric<dim> &l, bool between) const {
   const SoilElements<dim> &soil = problem_->soil();
-  const int per_cell = soil.points_per_cell(), first = soil.first_point(cell), body = soil.body_of(cell);
+  const int per_cell = soil.points_per_cell();
   const double near = per_cell > 1 ? soil.rule().point[0][0] : 1, far = per_cell > 1 ? soil.rule().point[0][1] : 0;
   std::array<double, dim + 1> weight{};
   for (int a = 0; a < per_cell; ++a) weight[a] = per_cell > 1 ? (l[a] - far) / (near - far) : 1;
@@ -283,6 +304,17 @@ void Statics<dim>::interpolate(int cell, const Barycentric<dim> &l, bool between
     for (double &w : weight) sum += w = std::max(w, 0.);
     for (double &w : weight) w /= sum;
   }
+  return weight;
+}
+
+/// Stress is linear between the Gauss points of a cell; history too, but not beyond what the points have: strength must
+/// not grow. Nor does stress go beyond them where it is `between`: what soil bears at all of them, it bears there.
+template <int dim>
+void Statics<dim>::interpolate(int cell, const Barycentric<dim> &l, bool between, double *stress,
+                               double *history) const {
+  const SoilElements<dim> &soil = problem_->soil();
+  const int per_cell = soil.points_per_cell(), first = soil.first_point(cell), body = soil.body_of(cell);
+  const auto weight = weights_of_points(l, between);
   const GaussPoints<dim> &points = soil.points()[body];
   const auto value = [&](const std::vector<double> &field, int width, int k) {
     double sum = 0;
@@ -369,9 +401,11 @@ std::optional<ParticleState<dim>> Statics<dim>::state_at(const Vec<dim> &x) cons
   const Law &law = world_.bodies[state.body]->law();
   state.strength =
       StrengthByPlace(world_.scene.body[state.body].law, law).shares(law, x[0], x[1], dim == 3 ? x[dim - 1] : 0);
+  if (consolidates(law)) state.strength = shares_at(cell, l);
   interpolate(cell, l, false, state.stress.data(), state.history.data());
   if (!bears(cell, state)) interpolate(cell, l, true, state.stress.data(), state.history.data());
   state.softened_by = softened_by(cell, state.body, state.history.data());
+  state.pore_pressure += make_effective(law, state.stress.data(), state.history.data());
   return state;
 }
 
@@ -443,6 +477,7 @@ Snapshot Statics<dim>::gauss_points() const {
         point.suction = std::max(0., -point.pore_pressure);
       point.history = p.history.data() + static_cast<size_t>(q) * world_.bodies[b]->history_count();
       point.softened_by = softened_by(cell, b, point.history);
+      point.pore_pressure += make_effective(world_.laws[b], point.stress.data(), point.history);
       fields.append(point, s.columns);
     }
   }

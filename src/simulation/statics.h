@@ -47,6 +47,10 @@ class Statics {
   /// last seepage left in the cells of this rank. Collective.
   void serialize(Archive &archive);
 
+  /// Lets soil whose [body.NAME.shansep] names the stage take its undrained strength from the present stress. What it
+  /// has then, in words; empty if there is none. Collective.
+  std::string take_consolidated_strength(const std::string &stage);  // shansep.cpp
+
   /// Sum over the Gauss points of the plastic strain that takes strength from soil. Collective.
   double softening_strain() const;
 
@@ -73,6 +77,9 @@ class Statics {
   /// Collective.
   std::vector<double> inflow() const;
 
+  /// The law of a body in a stage, whose water may drain there.
+  Law law_in(const Stage &stage, size_t body) const;
+
   /// Elements of first order make factors too large: a scene that looks for one has always those of second order.
   Elements elements() const;
   std::vector<std::string> lost_stages;  ///< names of stages that lost equilibrium, in a run that leads to a factor
@@ -88,6 +95,7 @@ class Statics {
   void make();
   PetscErrorCode activate();
   void choose_laws(const Stage &stage);
+  static void let_water_go(GaussPoints<dim> &points);
   void check_supports(bool soil_moves) const;
   void start_stress();  // initial_stress.cpp
   void to_gauss_points();
@@ -105,6 +113,9 @@ class Statics {
   void pressure_from_particles();
   void use_seeped_pressure();
   int cell_at(const Vec<dim> &x) const;
+  std::array<double, dim + 1> weights_of_points(const Barycentric<dim> &l, bool between) const;
+  StrengthShares shares_at(int cell, const Barycentric<dim> &l) const;
+  void shares_to_particles(size_t body);
   void interpolate(int cell, const Barycentric<dim> &l, bool between, double *stress, double *history) const;
   bool bears(int cell, const ParticleState<dim> &state) const;
   SofteningInput softened_by(int cell, int body, const double *history) const;

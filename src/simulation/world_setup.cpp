@@ -7,6 +7,7 @@
 #include "base/sum.h"
 #include "meshes/side_columns.h"
 #include "physics/boundary/rigid_bodies.h"
+#include "physics/laws/drainage.h"
 #include "scene/body_source.h"
 #include "scene/boundary_source.h"
 #include "scene/mesh_source.h"
@@ -17,6 +18,7 @@
 #include "scene/stage.h"
 #include "scene/transfer_source.h"
 #include "scene/water_source.h"
+#include "scene/words.h"
 #include "simulation/gap_walls.h"
 #include "simulation/rigid_checks.h"
 #include "simulation/shaken_supports.h"
@@ -63,10 +65,35 @@ std::string World<dim>::function_fault() const {
   return text_of_first(comm, !mine.empty(), mine);
 }
 
+namespace {
+
+/// Refuses undrained soil where pore fluids move, and stages that drainage names and the scene lacks.
+void check_drainage(const Scene &scene, const BodySource &body) {
+  const Drainage drainage = read_drainage(body.law);
+  const std::string path = "body." + body.name;
+  if (drainage.undrained() && fluids_move(scene.phases))
+    scene.complain(path + ".drainage",
+                   "must be \"drained\" where pore fluids move: there permeability and time decide what drains; take "
+                   "phases = \"drained\", or give the soil a low permeability");
+  std::vector<std::string> static_stages;
+  for (const Stage &stage : scene.stage)
+    if (stage.settles_soil() && !stage.finds_factor()) static_stages.push_back(stage.name);
+  const auto check = [&](const std::string &key, const std::vector<std::string> &names) {
+    for (const std::string &name : names)
+      if (std::ranges::find(static_stages, name) == static_stages.end())
+        scene.complain(path + key, "must name quasi-static or consolidation stages; there is no \"" + name + "\"; " +
+                                       suggestion(name, static_stages));
+  };
+  check(".drained_in", drainage.drained_in), check(".shansep.stage", drainage.shansep.stage);
+}
+
+}  // namespace
+
 template <int dim>
 void World<dim>::read_laws() {
   for (const BodySource &body : scene.body) {
     laws.push_back(read_law(body.law));
+    check_drainage(scene, body);
     const std::string problem = law_problem(laws.back(), dim);
     if (!problem.empty()) scene.complain("body." + body.name, "cannot be used: " + problem);
     if (body.averaging_length > 0 && plastic_strain_field(laws.back()) < 0)

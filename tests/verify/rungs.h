@@ -18,9 +18,11 @@
 #include "tests/verification/fem_elastic_slope/exact.h"
 #include "tests/verification/fem_footing/exact.h"
 #include "tests/verification/fem_infiltration/exact.h"
+#include "tests/verification/fem_hoek_brown/exact.h"
 #include "tests/verification/fem_infinite_slope/exact.h"
 #include "tests/verification/fem_mandel_cryer/exact.h"
 #include "tests/verification/fem_slope/exact.h"
+#include "tests/verification/fem_tension_crack/exact.h"
 #include "tests/verification/fem_vertical_cut/exact.h"
 #include "tests/verification/footing/exact.h"
 #include "tests/verification/gas_column/exact.h"
@@ -115,6 +117,10 @@ inline constexpr LadderEntry ladder[] = {
      rungs::fem_vertical_cut},
     {"fem_cylinder", "verification", "thick cylinder that yields from its bore", rungs::fem_cylinder},
     {"fem_slope", "verification", "factor of safety of a published slope", rungs::fem_slope},
+    {"fem_hoek_brown", "verification", "factor of safety of a published slope in Hoek-Brown rock",
+     rungs::fem_hoek_brown},
+    {"fem_tension_crack", "verification", "factor of safety of a published slope with a crack full of water",
+     rungs::fem_tension_crack},
     {"fem_infinite_slope", "verification", "factor of safety of a thin layer on a long slope",
      rungs::fem_infinite_slope},
     {"fem_at_rest", "verification", "slope handed from finite elements to particles remains at rest",

@@ -18,7 +18,8 @@ class EquilibriumStage final : public StaticStage<dim> {
   void follow(Path &path) override {
     const Stage &stage = this->stage_;
     QuasiStatic<dim> &problem = this->run_.statics.problem();
-    const std::vector<Law> &laws = this->run_.world.laws;
+    std::vector<Law> laws;
+    for (size_t b = 0; b < this->run_.world.laws.size(); ++b) laws.push_back(this->run_.statics.law_in(stage, b));
     const double tolerance = this->run_.scene.quasi_static->tolerance, &time = this->run_.clock.time;
     const bool may_creep = problem.may_creep(stage.softening), at_once = may_creep && first();
     const auto advance = [&](double from, double to, StepOutcome *outcome) -> PetscErrorCode {

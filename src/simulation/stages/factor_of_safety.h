@@ -19,6 +19,7 @@ class FactorStage final : public StageRunner<dim> {
 
  private:
   void begin();
+  const Stage *stage_before() const;
   FactorOfSafety search();
   void report(const FactorOfSafety &found);
   void show_mechanism();

@@ -150,6 +150,8 @@ class StaticStage : public StageRunner<dim> {
 
   void finish() {
     refuse_bad_functions();  // loads that are no numbers have no equilibrium
+    if (const std::string said = run_.statics.take_consolidated_strength(stage_.name); !said.empty())
+      run_.recorder.note(said);
     run_.recorder.write_snapshot();
     std::ostringstream text;
     text.precision(3);

@@ -16,8 +16,12 @@ inline void draw_strength(FrictionalStrength &law, Random &random, int number) {
   law.friction_angle = phi * degree.si,
   law.dilation_angle = (number % 4 == 0 ? phi : random.between(0, phi)) * degree.si;
   if (number % 2 == 0) return;
-  law.residual_cohesion = number % 3 == 0 ? 0 : random.between(0, 1) * law.cohesion;
-  law.residual_friction_angle = (number % 7 == 0 ? 0 : random.between(0, 1)) * law.friction_angle;
+  if (number % 8 == 3) {
+    law.residual_ratio = random.between(0, 1);
+  } else {
+    law.residual_cohesion = number % 3 == 0 ? 0 : random.between(0, 1) * law.cohesion;
+    law.residual_friction_angle = (number % 7 == 0 ? 0 : random.between(0, 1)) * law.friction_angle;
+  }
   law.residual_dilation_angle = random.between(0, 1) * law.dilation_angle;
   law.shape_factor = std::pow(10, random.between(0, 3));
   if (number % 9 == 0) law.reference_size = 0.2;
@@ -29,7 +33,7 @@ OneLaw drawn(Random &random, int number) {
   OneLaw law;
   draw_elasticity(law, random);
   if constexpr (requires { law.cohesion; }) draw_strength(law, random, number);
-  if constexpr (requires { law.tension_cutoff; }) {
+  if constexpr (requires { law.suction_cohesion; }) {
     if (number % 4 == 1) law.tension_cutoff = number % 8 == 1 ? 0 : std::pow(10, random.between(0, 4));
     if (number % 5 < 2) law.suction_cohesion = 20e3, law.suction_cohesion_rate = 1e-5;
     if (number % 5 == 1) law.suction_friction_rate = 1e-4 * degree.si;
@@ -45,6 +49,18 @@ OneLaw drawn(Random &random, int number) {
     law.limiting_friction = law.static_friction + (number % 4 == 0 ? 0 : random.between(0, 1));
     law.grain_size = std::pow(10, random.between(-4, -1));
   }
+  return law;
+}
+
+template <>
+inline HoekBrown drawn(Random &random, int number) {
+  HoekBrown law;
+  draw_elasticity(law, random);
+  law.intact_strength = std::pow(10, random.between(5, 8)), law.geological_strength_index = random.between(5, 100);
+  law.intact_constant = random.between(2, 35), law.disturbance_factor = number % 3 ? 0 : random.between(0, 1);
+  law.dilation_angle = (number % 4 == 0 ? 90 : random.between(0, 40)) * degree.si;
+  if (number % 5 == 0) law.tension_cutoff = number % 2 ? 0 : std::pow(10, random.between(2, 5));
+  if (number % 2) law.reduce_strength(random.between(0.5, 3));
   return law;
 }
 

@@ -64,6 +64,21 @@ inline std::vector<DruckerPrager> examples() {
   return laws;
 }
 
+/// The weak rock of Hammah et al. (2005), without and with associated flow, with a cut-off, and a stronger rock.
+template <>
+inline std::vector<HoekBrown> examples() {
+  HoekBrown weak;
+  weak.young_modulus = 20e6, weak.poisson_ratio = 0.3;
+  weak.intact_strength = 30e6, weak.geological_strength_index = 5, weak.intact_constant = 2;
+  HoekBrown associated = weak, cut = weak, blasted = weak, divided = associated;
+  associated.dilation_angle = 90 * degree.si;
+  cut.dilation_angle = 20 * degree.si, cut.tension_cutoff = 0;
+  blasted.intact_strength = 2e6, blasted.geological_strength_index = 40, blasted.intact_constant = 10;
+  blasted.disturbance_factor = 1, blasted.dilation_angle = 5 * degree.si;
+  divided.reduce_strength(1.4);
+  return {weak, associated, cut, blasted, divided};
+}
+
 /// The linear elasticity of docs/guide/umat, in C++.
 template <>
 inline std::vector<Umat> examples() {

@@ -394,6 +394,21 @@ TEST(MohrCoulomb, softens_to_its_residual_strength) {
   EXPECT_NEAR(Surface(residual).excess(principal(matrix<2>(point.stress[0]))), 0, 1e-6);
 }
 
+TEST(MohrCoulomb, softens_to_a_ratio_of_its_peak) {
+  MohrCoulomb law = mohr_coulomb(30e3, 28, 10), written_out = law;
+  law.residual_ratio = 0.4, law.shape_factor = 40;
+  written_out.shape_factor = 40, written_out.residual_cohesion = 0.4 * 30e3;
+  written_out.residual_friction_angle = std::atan(0.4 * std::tan(28 * degree.si));
+  EXPECT_EQ(law.problem(), "");
+  const auto one = sheared(law, 50), other = sheared(written_out, 50);
+  for (int k = 0; k < 3; ++k) EXPECT_DOUBLE_EQ(one[k], other[k]);
+  law.residual_cohesion = 1e3;
+  EXPECT_NE(law.problem().find("residual_ratio must not stand beside"), std::string::npos);
+  MohrCoulomb hard = mohr_coulomb(30e3, 28);
+  hard.residual_ratio = 0.4;
+  EXPECT_NE(hard.problem().find("shape_factor"), std::string::npos);
+}
+
 /// Alonso et al. (2015), eqs. (18), (19): c' = c_r + (c_p - c_r) exp(-eta eps_p), phi' likewise.
 TEST(MohrCoulomb, softens_by_the_exponential_law) {
   const MohrCoulomb law = softening_law();

@@ -76,6 +76,23 @@ TEST(StrengthByPlace, differs_from_point_to_point) {
   }
 }
 
+/// A ratio is that of each place, which one number for the residual strength cannot be.
+TEST(StrengthByPlace, softens_to_a_ratio_of_the_peak_of_each_point) {
+  MohrCoulomb clay = mohr_coulomb(40e3, 0);
+  clay.residual_ratio = 0.25, clay.shape_factor = 50, clay.reads_shares = true;
+  constexpr int count = 10;
+  Points<2> points(clay, count);
+  std::vector<double> share(count), whole(count, 1);
+  for (int i = 0; i < count; ++i) {
+    share[i] = (i + 1.) / count, points.stress[i] = {-4e4, -4e4, -4e4, 0};
+    points.increment[i].strain = {0, 0, 0, 0.05};
+  }
+  StressPoints<2> view = points.view();
+  view.cohesion_share = share.data(), view.friction_share = whole.data();
+  for (int step = 0; step < 50; ++step) update_stress<2>(points.law, view);
+  for (int i = 0; i < count; ++i) EXPECT_NEAR(points.stress[i][3], 0.25 * 40e3 * share[i], 1e-3);
+}
+
 struct Soil {
   DeferredTable law;
   template <class Visitor>
