@@ -39,7 +39,7 @@ struct HoekBrown : IsotropicElastic {
     v.number("intact_constant", intact_constant, one, Range{0.5, 60, {2, 35}}, "m_i: constant of the intact rock");
     v.number("disturbance_factor", disturbance_factor, one, Range{0, 1},
              "D: disturbance by blasting and stress relief; 0: undisturbed");
-    v.number("dilation_angle", dilation_angle, degree, Range{0, 90, {0, 35}},
+    v.number("dilation_angle", dilation_angle, degree, Range{0, 90},
              "dilation angle psi; limited to the friction angle of the envelope at each stress, which 90 always is");
     v.number("tension_cutoff", tension_cutoff, pascal, Range{-1, 1e9, {0, 1e7}},
              "tensile strength; negative: that of the apex, s sigma_ci / m_b");

@@ -39,6 +39,9 @@ struct ScenesTests {
   }
 };
 
+/// The tests have pore water of their own.
+Law drained(const DeferredTable &table) { return read_law(table).drained_as(Law()); }
+
 Job from_scene(const std::string &file, const SoilArguments &arguments) {
   std::vector<std::string> of_scene, of_tests;
   for (const std::string &one : arguments.set) (one.starts_with("test.") ? of_tests : of_scene).push_back(one);
@@ -54,7 +57,7 @@ Job from_scene(const std::string &file, const SoilArguments &arguments) {
   ScenesTests tests;
   TableReader::from_text("", "--set", of_tests).fill(tests);
   if (tests.test.empty()) tests.test.emplace_back().name = "triaxial_compression";
-  return {scene.title + ": " + wanted, read_law(scene.body[at - names.begin()].law), tests.test};
+  return {scene.title + ": " + wanted, drained(scene.body[at - names.begin()].law), tests.test};
 }
 
 Job from_soil_file(const TableReader &root, const SoilArguments &arguments) {
@@ -65,7 +68,7 @@ Job from_soil_file(const TableReader &root, const SoilArguments &arguments) {
   if (!root.has("material"))
     root.complain("material", "is missing: add a table [material] with law and its parameters");
   if (soil.test.empty()) root.complain("test", "is missing: add a table [test.NAME] with its type");
-  return {soil.title, read_law(soil.material.law), soil.test};
+  return {soil.title, drained(soil.material.law), soil.test};
 }
 
 /// Law by law the same columns, then what the law remembers. Pressures and q are positive in compression, strain and

@@ -13,6 +13,7 @@
 #include "scene/quasi_static_source.h"
 #include "scene/scene.h"
 #include "scene/stress_at_rest.h"
+#include "scene/water_source.h"
 #include "simulation/factor_document.h"
 #include "simulation/search_region.h"
 

@@ -13,7 +13,6 @@ gravity = 10
 [mesh]
 section = "../tests/exactness/quasi_static/seam.csv"
 size = 0.5
-[water]
 [body.block]
 region = "block"
 density = 2000
@@ -33,7 +32,8 @@ cohesion = "10 kPa"
 friction_angle = 0
 [boundary.base]
 kind = "fixed"
-[boundary.left]
+[boundary.walls]
+group = ["left", "toe"]
 kind = "roller"
 [[stage]]
 name = "weight"
@@ -68,7 +68,7 @@ TEST(TensionCrack, is_pushed_open_by_its_water) {
 
 /// Without water in it nothing moves: there is no factor, and the soil is as it was.
 TEST(TensionCrack, pushes_nothing_where_it_is_dry) {
-  EXPECT_THROW(search({"factor_of_safety.tension_crack=[[0,0.25],[1,0.25]]"}), std::runtime_error);
+  EXPECT_ANY_THROW(search({"factor_of_safety.tension_crack=[[0,0.25],[1,0.25]]"}));
 }
 
 TEST(TensionCrack, is_refused_where_its_line_is_none) {

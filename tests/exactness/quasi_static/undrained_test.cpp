@@ -85,6 +85,29 @@ TEST(Undrained, drains_where_a_stage_ignores_it) {
   }
 }
 
+/// Water and soil are strained alike: the excess pressure is K_w / n over K of the mean effective stress.
+TEST(Undrained, water_is_held_in_motion) {
+  const Solved solved = solve(box + "density = 2000\nvelocity = [\"0\", \"-10 * y\"]\n[[stage]]\nname = \"strain\"\n"
+                                    "duration = 1e-7\n",
+                              undrained);
+  const double excess = (K_u - K) * 1e-6;
+  EXPECT_LT(worst(solved, "excess_pore_pressure", excess), 0.5 * excess);  // means of cells at the faces strain less
+  EXPECT_LT(largest(solved, 1,
+                    [&](size_t i, int) {
+                      double mean = 0;
+                      for (int k = 0; k < 3; ++k) mean -= solved.value("stress", i, k) / 3;
+                      return solved.value("excess_pore_pressure", i) - (K_u - K) / K * mean;
+                    }),
+            1e-9 * excess);
+}
+
+/// What elements found goes on in motion, whose loads it bears as a whole.
+TEST(Undrained, motion_goes_on_with_the_pressure_of_the_elements) {
+  const Solved solved = solve(block + pressed + "[[stage]]\nname = \"motion\"\nduration = 1e-4\nhold_loads = true\n",
+                              undrained + Keys{"quasi_static.elements=patches"});
+  EXPECT_LT(worst(solved, "excess_pore_pressure", B * (1 + nu_u) / 3 * 40e3), 1e-6 * 40e3);
+}
+
 /// A stage without softening remembers the excess pressure all the same: it is a part of the stress.
 TEST(Undrained, stages_without_softening_keep_the_pressure) {
   const Keys soft{"body.soil.law=mohr_coulomb", "body.soil.cohesion=1e6",     "body.soil.friction_angle=0",

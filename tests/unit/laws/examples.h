@@ -75,7 +75,7 @@ inline std::vector<HoekBrown> examples() {
   cut.dilation_angle = 20 * degree.si, cut.tension_cutoff = 0;
   blasted.intact_strength = 2e6, blasted.geological_strength_index = 40, blasted.intact_constant = 10;
   blasted.disturbance_factor = 1, blasted.dilation_angle = 5 * degree.si;
-  divided.reduce_strength(1.4);
+  divided.dilation_angle = 90 * degree.si, divided.reduce_strength(1.4);
   return {weak, associated, cut, blasted, divided};
 }
 

@@ -77,7 +77,7 @@ double miss(const DruckerPrager &law, const Update &u) {
 }
 
 /// The circle touches the envelope of (HB.1) over `divisor`, by bisection for the point that it touches. Next to the
-/// apex, where the envelope ends on a tangent, only its tension counts.
+/// apex the envelope ends on a tangent.
 double miss(const HoekBrown &law, const Update &u) {
   const auto excess = [&](const Triple &t) {
     const double high = t.maxCoeff(), low = t.minCoeff(), centre = -(high + low) / 2;
@@ -85,15 +85,17 @@ double miss(const HoekBrown &law, const Update &u) {
       const double d = law.intact_strength * std::pow(x, law.a), rise = law.a * law.m_b * std::pow(x, law.a - 1);
       const double normal = (x - law.s) * law.scale + d / (2 + rise), tau = d * std::sqrt(1 + rise) / (2 + rise);
       const double slope = rise / std::sqrt(1 + rise) / 2 / law.divisor;
-      return std::pair{normal + tau / law.divisor * slope, tau / law.divisor * std::sqrt(1 + slope * slope)};
+      return Triple(normal + tau / law.divisor * slope, tau / law.divisor * std::sqrt(1 + slope * slope),
+                    slope / std::sqrt(1 + slope * slope));
     };
     double below = law.least, above = 1e9;
-    if (touching(below).first > centre) return high - law.limit;
+    if (const Triple last = touching(below); last[0] > centre)
+      return std::max((high - low) / 2 - last[1] - (centre - last[0]) * last[2], high - law.limit);
     for (int k = 0; k < 200; ++k) {
       const double x = std::sqrt(below * above);
-      (touching(x).first < centre ? below : above) = x;
+      (touching(x)[0] < centre ? below : above) = x;
     }
-    return std::max((high - low) / 2 - touching(below).second, high - law.limit);
+    return std::max((high - low) / 2 - touching(below)[1], high - law.limit);
   };
   const double whole = magnitude(u) + law.apex;
   return (excess(u.trial) <= 0 ? (u.end - u.trial).norm() : std::abs(excess(u.end))) / whole;
