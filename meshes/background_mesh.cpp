@@ -261,7 +261,9 @@ template <int dim>
 MeshReport BackgroundMesh<dim>::report() const {
   MeshReport report{};
   double smallest[2] = {std::numeric_limits<double>::max(), 1}, quality = 0;
-  for (const Cell<dim> &cell : cells) {
+  const int count = cells_in_sheet();
+  for (int c = 0; c < count; ++c) {
+    const Cell<dim> &cell = cells[c];
     std::array<Vec<dim>, dim + 1> corner;
     for (int k = 0; k <= dim; ++k) corner[k] = position[cell.node[k]];
     const Shape one = shape<dim>(corner, cell.gradient);
@@ -269,7 +271,7 @@ MeshReport BackgroundMesh<dim>::report() const {
     smallest[1] = std::min(smallest[1], one.quality);
     quality += one.quality;
   }
-  long long counts[2] = {cell_count(), std::count(owned.begin(), owned.end(), 1)};
+  long long counts[2] = {count, std::count(owned.begin(), owned.begin() + nodes_in_sheet(), 1)};
   MPI_Allreduce(MPI_IN_PLACE, smallest, 2, MPI_DOUBLE, MPI_MIN, comm());
   MPI_Allreduce(MPI_IN_PLACE, &quality, 1, MPI_DOUBLE, MPI_SUM, comm());
   MPI_Allreduce(MPI_IN_PLACE, counts, 2, MPI_LONG_LONG, MPI_SUM, comm());

@@ -115,6 +115,15 @@ class BackgroundMesh {
   /// From now on the nodes of each group (global numbers) move alike, as if they were one. Collective.
   void tie(const std::vector<std::vector<long long>> &groups);
 
+  /// From now on the mesh has one sheet of nodes and cells per list of regions: copies at the same places that share no
+  /// node, one behind the other. The cells of these regions are those of their sheet, all other ones those of the first
+  /// one; facets are those of all sheets. Finite elements cannot number the nodes of several sheets. Before `tie`.
+  /// Collective.
+  PetscErrorCode divide_into_sheets(const std::vector<std::vector<std::string>> &regions_of_sheets);
+  int sheet_count() const { return sheets_; }
+  int cells_in_sheet() const { return cell_count() / sheets_; }
+  int nodes_in_sheet() const { return node_count() / sheets_; }
+
   /// Local cells of a named group of cells, ascending; found on some rank or `has_region` is false on all.
   std::vector<int> region(const std::string &name) const;
   bool has_region(const std::string &name) const;
@@ -148,6 +157,7 @@ class BackgroundMesh {
   Regions regions_;  // of cells
   Groups groups_;
   std::vector<Seam> seams_;
+  int sheets_ = 1;
   std::vector<std::string> region_names_, group_names_, remarks_;
   mutable std::shared_ptr<const ElementPlex> elements_;
   std::vector<std::string> element_regions_;     // that can have finite elements; none: all

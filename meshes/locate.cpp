@@ -51,14 +51,15 @@ Located walk_on(const BackgroundMesh<dim> &mesh, int start, Point<dim> &x) {
     if (next < boundary) return {.cell = cell, .partition_face = -2 - next};
     cell = next;
   }
-  const int found = find(mesh, x);
+  const int found = find(mesh, x, cell / mesh.cells_in_sheet());
   if (found >= 0) return {found};
   return put_inside(mesh, cell, barycentric(mesh.cells[cell], x), x);
 }
 
 template <int dim>
-int find(const BackgroundMesh<dim> &mesh, const Point<dim> &x) {
-  for (int cell = 0; cell < mesh.cell_count(); ++cell) {
+int find(const BackgroundMesh<dim> &mesh, const Point<dim> &x, int sheet) {
+  const int cells = mesh.cells_in_sheet();
+  for (int cell = sheet * cells; cell < (sheet + 1) * cells; ++cell) {
     const auto n = barycentric(mesh.cells[cell], x);
     if (*std::min_element(n.begin(), n.end()) >= inside_tolerance) return cell;
   }
@@ -67,7 +68,7 @@ int find(const BackgroundMesh<dim> &mesh, const Point<dim> &x) {
 
 template Located walk_on<2>(const BackgroundMesh<2> &, int, Vec<2> &);
 template Located walk_on<3>(const BackgroundMesh<3> &, int, Vec<3> &);
-template int find<2>(const BackgroundMesh<2> &, const Vec<2> &);
-template int find<3>(const BackgroundMesh<3> &, const Vec<3> &);
+template int find<2>(const BackgroundMesh<2> &, const Vec<2> &, int);
+template int find<3>(const BackgroundMesh<3> &, const Vec<3> &, int);
 
 }  // namespace talus

@@ -50,9 +50,9 @@ inline Located walk(const BackgroundMesh<dim> &mesh, int start, Point<dim> &x) {
   return walk_on(mesh, start, x);
 }
 
-/// The cell of a point given without a start, by a search over all local cells; -1 when no local cell holds it. A point
-/// on a face belongs to the lowest of its cells; on a partition face each of the two ranks finds it.
+/// The cell of a point given without a start, by a search over all local cells of a sheet; -1 when none holds it. A
+/// point on a face belongs to the lowest of its cells; on a partition face each of the two ranks finds it.
 template <int dim>
-int find(const BackgroundMesh<dim> &mesh, const Point<dim> &x);
+int find(const BackgroundMesh<dim> &mesh, const Point<dim> &x, int sheet = 0);
 
 }  // namespace talus

@@ -10,6 +10,7 @@
 #include "base/phases.h"
 #include "physics/any_soil_motion.h"
 #include "physics/boundary/conditions.h"
+#include "physics/boundary/soil_contact.h"
 #include "physics/laws/update_stress.h"
 #include "physics/pores/pore_fluid.h"
 #include "physics/soil_motion/cell_filling.h"

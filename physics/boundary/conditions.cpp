@@ -6,6 +6,8 @@
 #include "base/room.h"
 #include "physics/boundary/node_normals.h"
 #include "physics/boundary/rigid_bodies.h"
+#include "physics/boundary/soil_contact.h"
+#include "scene/contact_source.h"
 #include "scene/rigid_source.h"
 
 namespace talus {
@@ -21,6 +23,12 @@ template <int dim>
 void Conditions<dim>::take_rigid_bodies(std::unique_ptr<RigidBodies<dim>> bodies) {
   rigid_ = std::move(bodies);
   work_.resize(sources_.size() + rigid_->sources().size(), 0);
+}
+
+template <int dim>
+void Conditions<dim>::take_soil_contact(std::unique_ptr<SoilContact<dim>> contact) {
+  contact_ = std::move(contact);
+  work_.resize(work_.size() + contact_->sources().size(), 0);
 }
 
 template <int dim>
@@ -200,6 +208,7 @@ void Conditions<dim>::add_work(const Vec<dim> *u) {
   surface_loads_.add_work(u, work_);
   bases_.add_slip(u);
   if (rigid_) rigid_->advance(u, &work_[sources_.size()]);
+  if (contact_) contact_->add_work(u, &work_[work_.size() - contact_->sources().size()]);
 }
 
 template <int dim>
@@ -209,12 +218,19 @@ void Conditions<dim>::constrain(double t, const FilledGrid<dim> &grid, Vec<dim> 
 }
 
 template <int dim>
-void Conditions<dim>::follow_rigid_bodies(Vec<dim> *w) const {
+void Conditions<dim>::follow_contacts(Vec<dim> *w) const {
   if (rigid_) rigid_->follow(w);
+  if (contact_) contact_->follow(w);
+}
+
+template <int dim>
+void Conditions<dim>::join_bonded(Vec<dim> *v) const {
+  if (contact_) contact_->join_bonded(v);
 }
 
 template <int dim>
 void Conditions<dim>::project(const Vec<dim> *v, Vec<dim> *force) {
+  if (contact_) contact_->project(v, force);
   see_columns(v);
   for (const Dashpot &d : active_dashpots_)
     map<dim>(force[d.node]) -= d.matrix * (map<dim>(v[d.node]) - map<dim>(d.beyond));
@@ -239,6 +255,7 @@ PetscErrorCode Conditions<dim>::resolve(double t, double gamma, const FilledGrid
     return before;
   };
   impulses_.clear(), resolved_step_ = gamma;
+  if (contact_) contact_->resolve({t, gamma, grid, prescribed_, bases_}, v);
   const auto damp = [&](const Dashpot &d) {
     const Vec<dim> before = v[d.node];
     const Square<dim> mass = pores.mass(grid, d.node), system = mass + gamma * d.matrix;
@@ -294,6 +311,7 @@ PetscErrorCode Conditions<dim>::serialize(Archive &archive, FilledGrid<dim> &gri
   archive.sums("boundaries", impulse_, work_);
   bases_.serialize(archive, grid);
   if (rigid_) rigid_->serialize(archive, grid);
+  if (contact_) contact_->serialize(archive, grid);
   PetscFunctionReturn(0);
 }
 

@@ -21,6 +21,8 @@ namespace talus {
 
 template <int dim>
 class RigidBodies;  // physics/boundary/rigid_bodies.h
+template <int dim>
+class SoilContact;  // physics/boundary/soil_contact.h
 
 template <int dim>
 class Conditions {
@@ -33,6 +35,8 @@ class Conditions {
   PetscErrorCode setup(const BackgroundMesh<dim> &mesh, std::vector<Source> sources);
   /// Rigid bodies that the soil meets, after `setup`.
   void take_rigid_bodies(std::unique_ptr<RigidBodies<dim>> bodies);
+  /// Groups of bodies that meet in contact, after `take_rigid_bodies`.
+  void take_soil_contact(std::unique_ptr<SoilContact<dim>> contact);
   /// Picks the nodes and facets of the filled grid. `impedance` [filled cells] holds rho c_p and rho c_s. Collective.
   PetscErrorCode begin(FilledGrid<dim> &grid, const std::vector<std::array<double, 2>> &impedance,
                        const std::vector<double> &filling);
@@ -61,9 +65,11 @@ class Conditions {
     for (const Dashpot &d : active_dashpots_)
       if (!sources_[d.source].kind.has_column) w[d.node] = v[d.node];
   }
-  /// Lets nodes that pressed on rigid bodies in the last `resolve` go on with these, in velocities by which places
-  /// move.
-  void follow_rigid_bodies(Vec<dim> *w) const;
+  /// Lets nodes that pressed on rigid bodies or on another group in the last `resolve` go on with these, in velocities
+  /// by which places move.
+  void follow_contacts(Vec<dim> *w) const;
+  /// Gives nodes of groups that are bonded their common velocity.
+  void join_bonded(Vec<dim> *v) const;
   /// Takes from velocities what goes into a base.
   void leave_base(Vec<dim> *v) { bases_.leave_base(prescribed_, v); }
   /// Subtracts from nodal forces the forces of dashpots and friction at velocities `v`, and the parts that supports and
@@ -76,14 +82,15 @@ class Conditions {
     for (Dashpot &d : active_dashpots_)
       if (sources_[d.source].kind.incoming_wave) d.beyond = velocity;
   }
-  /// Applies dashpots, contact with friction, prescribed velocities and rigid bodies, implicitly over a step gamma, and
-  /// sums up the reactions. Collective.
+  /// Applies contact between groups, dashpots, contact with friction, prescribed velocities and rigid bodies, implicitly
+  /// over a step gamma, and sums up the reactions. Collective.
   PetscErrorCode resolve(double t, double gamma, const FilledGrid<dim> &grid, Vec<dim> *v, const Pores &pores = {});
 
   /// Adds the work of the boundaries in an accepted step with nodal displacements `u`, and what bases remember of it;
   /// rigid bodies move.
   void add_work(const Vec<dim> *u);
-  /// Work of each source, and behind them of each rigid body, on the soil, on this rank [J].
+  /// Work of each source, and behind them of each rigid body and each contact between groups, on the soil, on this rank
+  /// [J].
   const std::vector<double> &work() const { return work_; }
 
   SurfaceLoads<dim> &surface_loads() { return surface_loads_; }
@@ -91,6 +98,8 @@ class Conditions {
   const RigidBases<dim> &bases() const { return bases_; }
   RigidBodies<dim> *rigid_bodies() { return rigid_.get(); }  ///< null: the scene has none
   const RigidBodies<dim> *rigid_bodies() const { return rigid_.get(); }
+  SoilContact<dim> *soil_contact() { return contact_.get(); }  ///< null: all bodies are of one group
+  const SoilContact<dim> *soil_contact() const { return contact_.get(); }
   /// Saves or loads the state that `begin` cannot find again: the state of contacts, frozen reactions, impulses and
   /// work. Loading calls `begin`. Collective.
   PetscErrorCode serialize(Archive &archive, FilledGrid<dim> &grid, const std::vector<std::array<double, 2>> &impedance,
@@ -123,6 +132,7 @@ class Conditions {
   PrescribedMotion<dim> prescribed_;
   RigidBases<dim> bases_;
   std::unique_ptr<RigidBodies<dim>> rigid_;
+  std::unique_ptr<SoilContact<dim>> contact_;
   struct DashpotFace {
     int source, column;  // the column at its other end, -1: none
     std::vector<Facet<dim>> facets;

@@ -297,6 +297,7 @@ PetscErrorCode find_node_normals(const BackgroundMesh<dim> &mesh, const std::vec
   std::vector<Tile<dim>> tiles;
   for (const auto &[source, facets] : sources)
     for (const Facet<dim> &f : facets) {
+      if (f.cell >= mesh.cells_in_sheet()) continue;  // all sheets have the same normals
       Tile<dim> tile{source, f.area, f.normal, {}};
       for (int k = 0; k < dim; ++k) tile.corner[k] = mesh.position[f.node[k]];
       std::sort(tile.corner.begin(), tile.corner.end());
@@ -308,11 +309,13 @@ PetscErrorCode find_node_normals(const BackgroundMesh<dim> &mesh, const std::vec
   std::sort(tiles.begin(), tiles.end(), [](const Tile<dim> &a, const Tile<dim> &b) { return a.key() < b.key(); });
   const Tiling<dim> tiling(std::move(tiles));
   std::vector<int> node_at(tiling.patches().empty() ? 0 : tiling.patches().back().place + 1, -1);
-  for (int node = 0; node < mesh.node_count(); ++node)
+  const int nodes = mesh.nodes_in_sheet();
+  for (int node = 0; node < nodes; ++node)
     if (const int place = tiling.place(mesh.position[node]); place >= 0) node_at[place] = node;
   normals.clear();
   for (const auto &patch : tiling.patches())
-    if (node_at[patch.place] >= 0) normals.push_back({patch.source, node_at[patch.place], patch.normal, patch.area});
+    for (int s = 0; node_at[patch.place] >= 0 && s < mesh.sheet_count(); ++s)
+      normals.push_back({patch.source, s * nodes + node_at[patch.place], patch.normal, patch.area});
   PetscFunctionReturn(0);
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "base/room.h"
 #include "scene/transfer_source.h"
@@ -44,6 +45,26 @@ void CellFilling<dim>::find(const FilledGrid<dim> &grid, Integration integration
     slenderness[c] = 0;
     for (const auto &g : shape.gradient)
       for (double x : g) slenderness[c] += x * x;
+  }
+  find_divided(grid);
+  divide_cells(accepted);
+  for (const DividedCell &one : divided)
+    share[one.cell] = accepted.weight[one.cell] / grid.shape[one.cell].volume;
+}
+
+template <int dim>
+void CellFilling<dim>::find_divided(const FilledGrid<dim> &grid) {
+  divided.clear();
+  const BackgroundMesh<dim> &mesh = grid.mesh();
+  const int cells = mesh.cells_in_sheet();
+  if (mesh.sheet_count() == 1) return;
+  const auto volume_in = [&](int c) { return std::accumulate(grid.nodal_share[c].begin(), grid.nodal_share[c].end(), 0.); };
+  for (int c = 0; c < grid.cell_count(); ++c) {
+    double all = 0;
+    int met = 0;
+    for (int copy = grid.mesh_cell[c] % cells; copy < mesh.cell_count(); copy += cells)
+      if (const int other = grid.find_cell(copy); other >= 0) all += volume_in(other), ++met;
+    if (met > 1) divided.push_back({c, volume_in(c) / all});
   }
 }
 

@@ -92,6 +92,7 @@ PetscErrorCode SoilMotion<dim, Phases>::deform(double t, const Vec<dim> *u, Stat
   }
   for (int c = 0; c < cells; ++c)
     to.weight[c] = to.particle_volume[c] + filling_.blend[c] * (to.shape[c].volume - to.particle_volume[c]);
+  filling_.divide_cells(to);
   if (!trial && loading.softening) PetscCall(softening_.update(grid_, points_));
   if constexpr (Phases::liquid) {
     fluid_.change_masses(pore_frame(t, to));

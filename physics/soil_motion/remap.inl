@@ -100,11 +100,14 @@ PetscErrorCode SoilMotion<dim, Phases>::start_part(double t) {
   const int nodes = grid_.node_count();
   const double load_time = loading.time_at(t);
   std::vector<Vec<dim>> &start = velocities_.start, &now = velocities_.now;
+  SoilContact<dim> *contact = conditions_.soil_contact();
+  if (contact) PetscCall(contact->search(grid_, smallest_mass_, &nodal_[dim + 1], nodal_sums));
   filling_.find(grid_, transfer_.integration, &nodal_[dim + 1], nodal_sums, accepted_);
   if (conditions_.has_dashpots()) filling_.measure_impedance(grid_, bodies_, points_, accepted_);
   PetscCall(conditions_.begin(grid_, filling_.impedance, filling_.share));
   conditions_.surface_loads().begin(bodies_, grid_);
   PetscCall(meet_boundaries(load_time));
+  if (contact) contact->meet(grid_, start.data());
   std::copy_n(start.begin(), nodes, now.begin());
   if constexpr (Phases::liquid) {
     if (implicit_.acts) implicit_.begin_part(grid_);

@@ -30,7 +30,11 @@ bool SoilMotion<dim, Phases>::find_trouble(Vec<dim> *where, std::string *cause) 
       for (int d = 0; d < dim; ++d) (*where)[d] += mesh_.position[grid_.mesh_node[i]][d] / (dim + 1);
     return true;
   }
-  return false;
+  const SoilContact<dim> *contact = conditions_.soil_contact();
+  if (!contact || !contact->find_crowded(where)) return false;
+  *cause = "three contact groups meet in one cell, and contact acts between two; give two of them one contact_group, or "
+           "keep them a cell apart, by finer cells";
+  return true;
 }
 
 /// Where the fluids find a state of the soil at time t.
@@ -116,7 +120,7 @@ PetscErrorCode SoilMotion<dim, Phases>::find_moving(double t, const Vec<dim> *v,
     for (int i = 0; i < nodes; ++i) add_scaled<dim>(moving[i], own, velocities_.start[i]);
   }
   conditions_.constrain(loading.time_at(t), grid_, moving.data(), true);
-  conditions_.follow_rigid_bodies(moving.data());
+  conditions_.follow_contacts(moving.data());
   PetscFunctionReturn(0);
 }
 
@@ -178,6 +182,7 @@ PetscErrorCode SoilMotion<dim, Phases>::serialize(Archive &archive) {
   archive.column(grid.cells, "particle volume", accepted_.particle_volume);
   archive.column(grid.cells, "weight", accepted_.weight);
   filling_.serialize(archive, grid.cells);
+  if (archive.reading()) filling_.find_divided(grid_);
   std::vector<Archive::Rows> points(bodies_.size());
   for (size_t b = 0; b < bodies_.size(); ++b) {
     points[b] = serialize_points(archive, b);

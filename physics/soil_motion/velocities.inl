@@ -126,6 +126,7 @@ PetscErrorCode SoilMotion<dim, Phases>::map_back(double t, double gamma, double 
       }
     conditions_.keep_dashpots(velocity, mapped);
     constrain(t, velocity);
+    conditions_.join_bonded(velocity);
   } else {  // the same sum, mapped once
     for (int i = 0; i < nodes; ++i)
       for (int d = 0; d < dim; ++d) scratch_[i][d] = velocity[i][d] - velocities_.kept * start[i][d];
@@ -135,7 +136,7 @@ PetscErrorCode SoilMotion<dim, Phases>::map_back(double t, double gamma, double 
     conditions_.keep_dashpots(velocity, mapped);
   }
   constrain(t, mapped);
-  conditions_.follow_rigid_bodies(mapped);
+  conditions_.follow_contacts(mapped);
   PetscFunctionReturn(0);
 }
 

@@ -29,6 +29,7 @@ inline constexpr Range weight_of_soil{1e3, 1e5, {10e3, 30e3}};  ///< of unit wei
 struct BodySource {
   std::string name;                   ///< the table's own name, [body.NAME]
   std::vector<std::string> region;    ///< physical groups of cells
+  std::string contact_group;          ///< bodies of one group stick where they meet; empty: that of all without one
   double unit_weight = 0;             ///< total, above the water table if it differs below it [N/m3]; gives density
   double saturated_unit_weight = 0;   ///< total, below the water table [N/m3]; gives grain_density
   double density = 0;                 ///< total density [kg/m3]; or porosity and grain_density
@@ -59,6 +60,9 @@ struct BodySource {
   void fields(Visitor &&v) {
     v.texts("region", region,
             "name (or list of names) of the physical groups of cells that the body fills at the start");
+    v.text("contact_group", contact_group,
+           "group to which the body belongs: groups part and slide where they meet, as [contact.NAME] says, and bodies of "
+           "one group stick; default: one group, \"default\"");
     v.number("density", density, kilogram_per_cubic_metre, Range{1e-3, 1e5, {800, 3500}},
              "total density, above and below the water table; or give unit_weight, or porosity and grain_density");
     v.number("unit_weight", unit_weight, newton_per_cubic_metre, weight_of_soil,

@@ -21,7 +21,7 @@ inline constexpr std::string_view doubt_names =
     " residual_saturation rest_speed rotation saturated_unit_weight scale seismic_coefficient shape shape_factor "
     "shear_modulus"
     " smallest_step solid_density static_friction step_error storage suction suction_cohesion swelling_slope"
-    " tension_cutoff thermal_conductivity thermal_pressurisation thickness tolerance unit_weight velocity_tolerance"
+    " tensile_strength tension_cutoff thermal_conductivity thermal_pressurisation thickness tolerance unit_weight velocity_tolerance"
     " viscosity void_ratio volume_cap yield_stress young_modulus base_slips brittle cavitation changing_table"
     " coarse_cells drainage drift dry_boundary dry_pond early_suction excess_alone faces_left film"
     " free_side gravity_at_once gravity_ramp idle_earthquake late_load mesh_end mesh_units"

@@ -17,6 +17,7 @@ namespace talus {
 
 struct BodySource;
 struct BoundarySource;
+struct ContactSource;
 struct EarthquakeSource;
 struct FactorSource;
 struct Gas;
@@ -51,6 +52,7 @@ struct Scene {
   std::vector<BodySource> body;
   std::vector<BoundarySource> boundary;
   std::vector<RigidSource> rigid;
+  std::vector<ContactSource> contact;
   Boxed<Water> water;
   Boxed<Gas> gas;
   std::vector<Stage> stage;

@@ -3,6 +3,7 @@
 /// headers.
 #include "scene/body_source.h"
 #include "scene/boundary_source.h"
+#include "scene/contact_source.h"
 #include "scene/earthquake_source.h"
 #include "scene/factor_source.h"
 #include "scene/mesh_source.h"
@@ -39,6 +40,7 @@ void Scene::fields(Visitor &&v) {
   v.named("body", body, "soils, [body.NAME]");
   v.named("boundary", boundary, "conditions on named groups of facets, [boundary.NAME]");
   v.named("rigid", rigid, "rigid bodies and walls that soil meets, [rigid.NAME]");
+  v.named("contact", contact, "contact between two groups of bodies, [contact.NAME]");
   v.table("water", *water, "pore water");
   v.table("gas", *gas, "pore gas");
   v.list("stage", stage, "stages in their order, [[stage]]");

@@ -204,10 +204,12 @@ class Model {
   std::string cells() const {
     std::vector<Piece<dim>> mine;
     if constexpr (dim == 2) {
-      for (int c = 0; c < world_.mesh.cell_count(); ++c) {
+      const int cells = world_.mesh.cells_in_sheet();
+      for (int c = 0; c < cells; ++c) {
         Piece<dim> cell;
         for (int a = 0; a < 3; ++a) cell.corner[a] = world_.mesh.position[world_.mesh.cells[c].node[a]];
-        cell.body = body_of_[c];
+        for (int copy = c; copy < world_.mesh.cell_count(); copy += cells)
+          cell.body = std::max(cell.body, body_of_[copy]);
         mine.push_back(cell);
       }
     } else if (rank_in(world_.comm) == 0) {  // has the surface of all ranks
@@ -235,6 +237,7 @@ class Model {
       for (const std::string &group : sources[s]->groups) {
         if (!world_.mesh.has_group(group)) continue;  // such as free_surface
         for (const Facet<dim> &facet : world_.mesh.facets(group)) {
+          if (facet.cell >= world_.mesh.cells_in_sheet() && !has_soil(facet.cell)) continue;
           Piece<dim> piece;
           for (int a = 0; a < dim; ++a) piece.corner[a] = world_.mesh.position[facet.node[a]];
           piece.normal = facet.normal, piece.source = static_cast<int>(s);

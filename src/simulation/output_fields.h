@@ -16,6 +16,7 @@
 #include "particles/escaped_particles.h"
 #include "physics/any_soil_motion.h"
 #include "physics/boundary/rigid_bodies.h"
+#include "physics/boundary/soil_contact.h"
 #include "physics/laws/present_strength.h"
 #include "physics/laws/strength_by_place.h"
 #include "simulation/energy_sums.h"
@@ -219,6 +220,14 @@ struct RigidRow {
   double elapsed = 0;  ///< since the row before [s]
 };
 
+/// A contact between two groups in history.csv.
+template <int dim>
+struct ContactRow {
+  std::string name;
+  typename SoilContact<dim>::Report report{};
+  double elapsed = 0;  ///< since the row before [s]
+};
+
 /// Motion of the ground: of the base or, where a wave comes in, of the outcrop that [[earthquake]] states [m/s2],
 /// [m/s], [m].
 struct GroundRow {
@@ -241,6 +250,7 @@ struct RunRow {
   std::vector<double> handed;       ///< FluidBooks::handed; empty where no stage hands states over [kg]
   std::vector<BoundaryRow<dim>> boundaries;
   std::vector<RigidRow<dim>> rigid;
+  std::vector<ContactRow<dim>> contacts;
 
   /// Calls column(HistoryColumn, value) for each column, in the order of the file.
   template <class Visitor>
@@ -316,9 +326,21 @@ struct RunRow {
       for (int d = 0; d < dim; ++d) moves(string("force_") + "xyz"[d], "N", impulse[d] * per_time);
       moves("moment", "N m", impulse[dim] * per_time);
     }
+    for (const ContactRow<dim> &c : contacts) {
+      const auto shows = [&](const string &quantity, const string &unit, double value) {
+        column(column_of("contact", c.name, quantity, unit), value);
+      };
+      for (int d = 0; d < dim; ++d)
+        shows(string("force_") + "xyz"[d], "N", c.elapsed > 0 ? c.report.impulse[d] / c.elapsed : 0);
+      shows("friction", "-", c.report.friction), shows("sliding", "m/s", c.report.sliding);
+    }
+    const auto behind_boundaries = [&](std::size_t k) {
+      return boundaries.size() + k < energy.of_boundary.size() ? energy.of_boundary[boundaries.size() + k] : 0;
+    };
+    for (std::size_t k = 0; k < contacts.size(); ++k)
+      joules("work_" + contacts[k].name, behind_boundaries(rigid.size() + k));
     for (std::size_t k = 0; k < rigid.size(); ++k)
-      joules("work_" + rigid[k].name,
-             boundaries.size() + k < energy.of_boundary.size() ? energy.of_boundary[boundaries.size() + k] : 0);
+      joules("work_" + rigid[k].name, behind_boundaries(k));
     for (std::size_t s = 0; s < boundaries.size(); ++s)
       if (!boundaries[s].of_water)
         joules("work_" + boundaries[s].name, s < energy.of_boundary.size() ? energy.of_boundary[s] : 0);

@@ -10,6 +10,7 @@
 #include "output/pictures.h"
 #include "output/replace_file.h"
 #include "output/together.h"
+#include "scene/contact_source.h"
 #include "scene/output_source.h"
 #include "scene/reader.h"
 #include "scene/rigid_source.h"
@@ -69,11 +70,14 @@ template <int dim>
 MeshPicture Recorder<dim>::mesh_picture() const {
   MeshPicture picture;
   picture.dimension = dim;
-  picture.position.reserve(of_.world.mesh.position.size() * dim);
-  picture.cell_node.reserve(of_.world.mesh.cells.size() * (dim + 1));
-  for (const Vec<dim> &x : of_.world.mesh.position) picture.position.insert(picture.position.end(), x.begin(), x.end());
-  for (const Cell<dim> &cell : of_.world.mesh.cells)
-    picture.cell_node.insert(picture.cell_node.end(), cell.node.begin(), cell.node.end());
+  const BackgroundMesh<dim> &mesh = of_.world.mesh;
+  const int nodes = mesh.nodes_in_sheet(), cells = mesh.cells_in_sheet();
+  picture.position.reserve(static_cast<std::size_t>(nodes) * dim);
+  picture.cell_node.reserve(static_cast<std::size_t>(cells) * (dim + 1));
+  for (int i = 0; i < nodes; ++i)
+    picture.position.insert(picture.position.end(), mesh.position[i].begin(), mesh.position[i].end());
+  for (int c = 0; c < cells; ++c)
+    picture.cell_node.insert(picture.cell_node.end(), mesh.cells[c].node.begin(), mesh.cells[c].node.end());
   return picture;
 }
 
@@ -246,6 +250,8 @@ RunRow<dim> Recorder<dim>::run_row() const {
                               {}});
   }
   for (const RigidSource &source : scene_.rigid) row.rigid.push_back({source.name});
+  if (world.conditions.soil_contact())
+    for (const ContactSource &source : scene_.contact) row.contacts.push_back({source.name});
   return row;
 }
 
@@ -287,6 +293,12 @@ void Recorder<dim>::write_history() {
     require(bodies->take_reports(reports));
     for (size_t b = 0; b < reports.size(); ++b)
       run.rigid[b].report = reports[b], run.rigid[b].elapsed = of_.clock.time - impulse_time_;
+  }
+  if (SoilContact<dim> *contact = of_.world.conditions.soil_contact()) {
+    std::vector<typename SoilContact<dim>::Report> reports;
+    require(contact->take_reports(reports));
+    for (size_t k = 0; k < reports.size(); ++k)
+      run.contacts[k].report = reports[k], run.contacts[k].elapsed = of_.clock.time - impulse_time_;
   }
   impulse_time_ = of_.clock.time;
   run.visit([&](const HistoryColumn &, double value) { row.push_back(value); });

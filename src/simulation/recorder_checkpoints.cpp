@@ -16,6 +16,7 @@ namespace {
 std::string tie_of(const std::string &table) {
   if (table == "mesh") return "particles, stresses and contacts in the checkpoint belong to the cells of the mesh";
   if (table == "rigid") return "the checkpoint holds places, velocities and contacts of rigid bodies";
+  if (table == "contact") return "the checkpoint holds what contacts between groups remember";
   if (table == "grids") return "functions of place take their values from it";
   if (table == "boundary") return "the checkpoint holds reactions, contacts and work of the boundaries as they were";
   return "the saved state has come about with it";

@@ -45,7 +45,8 @@ std::string tie_of(const Words &words, PhaseModel phases) {
                                                "velocity",
                                                "displacement",
                                                "stress",
-                                               "averaging_length"};
+                                               "averaging_length",
+                                               "contact_group"};
   if (free.count(table)) return "";
   if (table == "body") {
     if (last.empty()) return "its bodies are those of that run";

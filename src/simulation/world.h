@@ -128,6 +128,8 @@ class World {
   std::vector<Source> read_sources();
   void read_mesh(DM plex, const std::string &mesh_file, const Cuts &cuts, const std::vector<Source> &sources);
   void take_rigid_bodies();
+  void separate_groups();
+  void take_soil_contact();
   void tie_sides(const std::vector<Source> &sources, bool complains);
   void find_mesh_box();
   void check_bodies() const;                                        // world_checks.cpp

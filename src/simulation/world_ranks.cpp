@@ -74,7 +74,7 @@ std::vector<FilledCell<dim>> World<dim>::work_of_cells(double step, long long st
     if (counts[c].particles == 0) continue;
     counts[c].cells = 1;
     const double work = rates_.of(counts[c], static_cast<double>(steps));
-    filled.push_back({mesh.global_cell[c], WorkRates::without_round_off(work), {}});
+    filled.push_back({mesh.global_cell[c % mesh.cells_in_sheet()], WorkRates::without_round_off(work), {}});
     map<dim>(filled.back().way) = step / counts[c].particles * map<dim>(speed[c]);
   }
   return filled;
@@ -87,10 +87,12 @@ void World<dim>::divide(const Cuts &cuts) {
   std::vector<Source> sources = conditions.sources();
   const bool stand_ins = conditions.uses_stand_ins();
   mesh = mesh.divided(cuts), comm = mesh.comm();
+  separate_groups();
   tie_sides(sources, false);
   conditions = Conditions<dim>();
   require(conditions.setup(mesh, std::move(sources)));
   take_rigid_bodies();
+  take_soil_contact();
   conditions.use_stand_ins(stand_ins), conditions.bases().remember_slip(loading.softening);
   pressure.set_regions(bodies_of_cells(mesh, scene));
   set_pore_pressure_ratios();

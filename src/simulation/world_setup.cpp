@@ -8,8 +8,10 @@
 #include "meshes/side_columns.h"
 #include "physics/boundary/rigid_bodies.h"
 #include "physics/laws/drainage.h"
+#include "physics/boundary/soil_contact.h"
 #include "scene/body_source.h"
 #include "scene/boundary_source.h"
+#include "scene/contact_source.h"
 #include "scene/mesh_source.h"
 #include "scene/place_grid.h"
 #include "scene/reader.h"
@@ -19,6 +21,7 @@
 #include "scene/transfer_source.h"
 #include "scene/water_source.h"
 #include "scene/words.h"
+#include "simulation/contact_groups.h"
 #include "simulation/gap_walls.h"
 #include "simulation/rigid_checks.h"
 #include "simulation/shaken_supports.h"
@@ -38,6 +41,8 @@ World<dim>::World(MPI_Comm world, const Scene &of, DM plex, const std::string &m
   read_laws();
   std::vector<Source> sources = read_sources();
   read_mesh(plex, mesh_file, cuts, sources);
+  check_contacts(scene, plex != nullptr);
+  separate_groups();
   check_bodies();
   find_strengths();
   check_boundaries(sources);
@@ -47,6 +52,7 @@ World<dim>::World(MPI_Comm world, const Scene &of, DM plex, const std::string &m
   tie_sides(sources, true);
   require(conditions.setup(mesh, std::move(sources)));
   take_rigid_bodies();
+  take_soil_contact();
   check_gap_walls(*this);
   conditions.use_stand_ins(scene.stage.front().hold_loads);
   pressure.set_regions(bodies_of_cells(mesh, scene));
@@ -199,6 +205,20 @@ void World<dim>::tie_sides(const std::vector<Source> &sources, bool complains) {
 template <int dim>
 void World<dim>::take_rigid_bodies() {
   if (!scene.rigid.empty()) conditions.take_rigid_bodies(std::make_unique<RigidBodies<dim>>(mesh, bodies, scene.rigid));
+}
+
+/// Groups of bodies that meet in contact have sheets of the mesh of their own. Collective.
+template <int dim>
+void World<dim>::separate_groups() {
+  const std::vector<std::vector<std::string>> regions = contact_groups(scene).regions(scene);
+  if (regions.size() > 1) require(mesh.divide_into_sheets(regions));
+}
+
+template <int dim>
+void World<dim>::take_soil_contact() {
+  if (mesh.sheet_count() > 1)
+    conditions.take_soil_contact(
+        std::make_unique<SoilContact<dim>>(mesh, scene.contact, contact_groups(scene).pairs(scene)));
 }
 
 /// Grids of the scene are told of it.
@@ -455,6 +475,10 @@ template void World<2>::settle_bodies();
 template void World<3>::settle_bodies();
 template void World<2>::take_rigid_bodies();
 template void World<3>::take_rigid_bodies();
+template void World<2>::separate_groups();
+template void World<3>::separate_groups();
+template void World<2>::take_soil_contact();
+template void World<3>::take_soil_contact();
 template void World<2>::tie_sides(const std::vector<Source> &, bool);
 template void World<3>::tie_sides(const std::vector<Source> &, bool);
 template void World<2>::close_bases();

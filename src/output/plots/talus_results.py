@@ -160,7 +160,7 @@ def of_file(read):
 
 
 class Quantity(typing.NamedTuple):
-    """What a column of history.csv is: a quantity of a "point", a "boundary", a "rigid" body or the "run"; `which` names it or the part, such as
+    """What a column of history.csv is: a quantity of a "point", a "boundary", a "rigid" body, a "contact" or the "run"; `which` names it or the part, such as
     `kinetic` of the energy."""
 
     quantity: str
@@ -265,7 +265,7 @@ class History(OverTime):
             if of == "rigid" and quantity[-2:-1] == "_":
                 key, label = (f"{which}_{quantity[:-2]}", unit), quantity[-1]
             else:
-                key, label = ((f"{which}_{quantity}", unit), "") if of in ("boundary", "rigid") else ((quantity, unit), which)
+                key, label = ((f"{which}_{quantity}", unit), "") if of in ("boundary", "rigid", "contact") else ((quantity, unit), which)
             groups.setdefault(key, {})[label] = values
         return groups
 
