@@ -18,11 +18,10 @@ struct Region {
   std::function<bool(const Place &)> has;
 };
 
-/// The box from `low` to `high` in cells of `size` [m]; inner nodes are shifted by up to `jitter` sizes, those that
-/// `stays` names are not. Cells in no region are air. Facets: left, right (x), front, back (y in 3D), base, top.
+/// The box from `low` to `high` in cells of `size` [m]; inner nodes are shifted by up to `jitter` sizes. Cells in no
+/// region are air. Facets: left, right (x), front, back (y in 3D), base, top.
 inline void write_contact_mesh(const std::string &file, int dim, const Place &low, const Place &high, double size,
-                               double jitter, const std::vector<Region> &regions,
-                               const std::function<bool(const Place &)> &stays = {}) {
+                               double jitter, const std::vector<Region> &regions) {
   std::uint64_t state = 1;
   const auto random = [&state] {  // in [-1, 1], the same everywhere
     state = state * 6364136223846793005u + 1442695040888963407u;
@@ -38,10 +37,9 @@ inline void write_contact_mesh(const std::string &file, int dim, const Place &lo
         const std::array<int, 3> at{i, j, k};
         Place x{};
         for (int d = 0; d < dim; ++d) x[d] = low[d] + at[d] * (high[d] - low[d]) / count[d];
-        const bool moves = !stays || !stays(x);
         for (int d = 0; d < dim; ++d) {
           const double shift = jitter * size * random();
-          if (moves && at[d] > 0 && at[d] < count[d]) x[d] += shift;
+          if (at[d] > 0 && at[d] < count[d]) x[d] += shift;
         }
         node.push_back(x);
       }
