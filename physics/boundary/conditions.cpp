@@ -8,6 +8,7 @@
 #include "physics/boundary/rigid_bodies.h"
 #include "physics/boundary/soil_contact.h"
 #include "scene/contact_source.h"
+#include "physics/structures/structures_in_motion.h"
 #include "scene/rigid_source.h"
 
 namespace talus {
@@ -29,6 +30,16 @@ template <int dim>
 void Conditions<dim>::take_soil_contact(std::unique_ptr<SoilContact<dim>> contact) {
   contact_ = std::move(contact);
   work_.resize(work_.size() + contact_->sources().size(), 0);
+}
+
+template <int dim>
+void Conditions<dim>::take_structures(std::unique_ptr<StructuresInMotion<dim>> structures) {
+  structures_ = std::move(structures);
+}
+
+template <int dim>
+void Conditions<dim>::add_structures(const FilledGrid<dim> &grid, const StressOf &stress, Vec<dim> *force) {
+  structures_->add_force(grid, stress, force);
 }
 
 template <int dim>
@@ -100,6 +111,7 @@ PetscErrorCode Conditions<dim>::begin(FilledGrid<dim> &grid, const std::vector<s
       active_frozen_.push_back({grid.find_node(r.node), r.source, r.value});
   PetscCall(bases_.begin(grid, filling));
   if (rigid_) PetscCall(rigid_->search(grid));
+  if (structures_) structures_->begin(grid);
   if (!dashpots_.empty()) {
     constexpr int width = dim * dim;
     for (const auto &[source, column, facets] : dashpots_) {
@@ -200,7 +212,7 @@ void Conditions<dim>::add_reactions(Vec<dim> *force) const {
 }
 
 template <int dim>
-void Conditions<dim>::add_work(const Vec<dim> *u) {
+void Conditions<dim>::add_work(const FilledGrid<dim> &grid, const Vec<dim> *u) {
   for (const Reaction &r : impulses_) work_[r.source] += dot<dim>(r.value, u[r.node]) / resolved_step_;
   for (const auto *held : {&active_frozen_, &pulls_})
     for (const Reaction &r : *held)
@@ -209,6 +221,7 @@ void Conditions<dim>::add_work(const Vec<dim> *u) {
   bases_.add_slip(u);
   if (rigid_) rigid_->advance(u, &work_[sources_.size()]);
   if (contact_) contact_->add_work(u, &work_[work_.size() - contact_->sources().size()]);
+  if (structures_) structures_->advance(grid, u, resolved_step_);
 }
 
 template <int dim>
@@ -306,6 +319,7 @@ PetscErrorCode Conditions<dim>::serialize(Archive &archive, FilledGrid<dim> &gri
     frozen_.resize(nodes.size());
     const LocalNumbers node_of(mesh.global_node);
     for (size_t k = 0; k < nodes.size(); ++k) frozen_[k].node = node_of(nodes[k]);
+    if (structures_) structures_->resume_part();
     PetscCall(begin(grid, impedance, filling));
   }
   archive.sums("boundaries", impulse_, work_);

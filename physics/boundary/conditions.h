@@ -23,6 +23,7 @@ template <int dim>
 class RigidBodies;  // physics/boundary/rigid_bodies.h
 template <int dim>
 class SoilContact;  // physics/boundary/soil_contact.h
+class StructuresInMotion;  // physics/structures/structures_in_motion.h
 
 template <int dim>
 class Conditions {
@@ -37,6 +38,13 @@ class Conditions {
   void take_rigid_bodies(std::unique_ptr<RigidBodies<dim>> bodies);
   /// Groups of bodies that meet in contact, after `take_rigid_bodies`.
   void take_soil_contact(std::unique_ptr<SoilContact<dim>> contact);
+  /// What is built into the soil, after `setup`.
+  void take_structures(std::unique_ptr<StructuresInMotion<dim>> structures);
+  bool structures() const { return structures_ != nullptr; }  ///< has the scene any?
+  /// Adds this rank's part of the forces of structures on the nodes [N]; `stress` is the mean effective stress of a
+  /// filled cell [Pa]. Collective.
+  using StressOf = std::function<Eigen::Matrix3d(int cell)>;
+  void add_structures(const FilledGrid<dim> &grid, const StressOf &stress, Vec<dim> *force);
   /// Picks the nodes and facets of the filled grid. `impedance` [filled cells] holds rho c_p and rho c_s. Collective.
   PetscErrorCode begin(FilledGrid<dim> &grid, const std::vector<std::array<double, 2>> &impedance,
                        const std::vector<double> &filling);
@@ -87,8 +95,8 @@ class Conditions {
   PetscErrorCode resolve(double t, double gamma, const FilledGrid<dim> &grid, Vec<dim> *v, const Pores &pores = {});
 
   /// Adds the work of the boundaries in an accepted step with nodal displacements `u`, and what bases remember of it;
-  /// rigid bodies move.
-  void add_work(const Vec<dim> *u);
+  /// rigid bodies and structures move. Collective.
+  void add_work(const FilledGrid<dim> &grid, const Vec<dim> *u);
   /// Work of each source, and behind them of each rigid body and each contact between groups, on the soil, on this rank
   /// [J].
   const std::vector<double> &work() const { return work_; }
@@ -133,6 +141,7 @@ class Conditions {
   RigidBases<dim> bases_;
   std::unique_ptr<RigidBodies<dim>> rigid_;
   std::unique_ptr<SoilContact<dim>> contact_;
+  std::unique_ptr<StructuresInMotion<dim>> structures_;
   struct DashpotFace {
     int source, column;  // the column at its other end, -1: none
     std::vector<Facet<dim>> facets;

@@ -47,6 +47,16 @@ class CellStress {
               s[5] * n[0] + s[4] * n[1] + s[2] * n[2]};
   }
 
+  /// Mean effective stress of a cell [Pa].
+  Eigen::Matrix3d mean(int cell) const {
+    const auto &s = mean_[cell];
+    Eigen::Matrix3d m = Eigen::Matrix3d::Zero();
+    for (int k = 0; k < 3; ++k) m(k, k) = s[k];
+    m(0, 1) = m(1, 0) = s[3];
+    if constexpr (dim == 3) m(1, 2) = m(2, 1) = s[4], m(0, 2) = m(2, 0) = s[5];
+    return m;
+  }
+
  private:
   std::vector<std::array<double, stress_size<dim>>> mean_;  ///< [cell] [Pa]
 };

@@ -111,7 +111,7 @@ PetscErrorCode SoilMotion<dim, Phases>::accept(double t, const double *u, const 
     std::copy_n(reinterpret_cast<const Vec<dim> *>(v), grid_.node_count() * fields, velocity.begin());
   PetscCall(deform(t, displacement, accepted_));
   accepted_time_ = t;
-  conditions_.add_work(displacement);
+  conditions_.add_work(grid_, displacement);
   work_.add(grid_, displacement, loading.gravity_at(loading.set_at), extra_mass(), loading.damping > 0 || damped());
   if (damped()) work_.add_damping(grid_, displacement, rayleigh_.forces());
   measures_.move<dim>(grid_, velocity.data());

@@ -66,6 +66,9 @@ PetscErrorCode SoilMotion<dim, Phases>::total_force(double t, const State &state
   }
   if (damped) PetscCall(add_viscous_forces(state));
   conditions_.surface_loads().add(load_time, grid_, state.position, force_.data());
+  if (conditions_.structures())
+    conditions_.add_structures(
+        grid_, [this](int cell) { return stress_.mean(cell); }, force_.data());
   if (work_.imposes()) {
     work_.before_imposed(force_.data(), nodes);
     add_body_forces(load_time);

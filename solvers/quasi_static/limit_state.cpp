@@ -156,7 +156,7 @@ PetscErrorCode LimitState<dim>::settle_on_bases(int most, LimitSearch *result, b
     double change;
     PetscCall(settle(last - result->iterations, 0.05, 0.5 * small_residual, result, settled));
     if (!*settled || stop_asked()) PetscFunctionReturn(0);
-    PetscCall(problem_.bases().follow_normal_forces(&change));
+    PetscCall(problem_.follow_normal_forces(&change));
     if (change <= small_change) PetscFunctionReturn(0);
   }
   *settled = false;
@@ -186,7 +186,7 @@ PetscErrorCode LimitState<dim>::search(LimitSearch *result) {
   PetscCall(evaluate(x_));
   problem_.close_scale();
   double change;
-  PetscCall(problem_.bases().follow_normal_forces(&change));
+  PetscCall(problem_.follow_normal_forces(&change));
   double last_force = 0, last_prop_tried = 0;  // of the stiffer prop before
   for (double reduction = 10;;) {
     PetscCall(VecCopy(x_, start_));  // where this prop begins

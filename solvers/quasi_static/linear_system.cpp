@@ -201,6 +201,15 @@ PetscErrorCode SparseMatrix::add(PetscInt rows, const PetscInt *row, PetscInt co
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode SparseMatrix::add_here(PetscInt count, const PetscInt *row, const double *value) {
+  PetscFunctionBeginUser;
+  std::vector<PetscInt> mine(row, row + count);
+  for (PetscInt &one : mine)
+    if (one < first_ || one >= end_) one = -1;
+  PetscCall(add(count, mine.data(), count, row, value));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode SparseMatrix::finish() {
   PetscFunctionBeginUser;
   std::stable_sort(elsewhere_.begin(), elsewhere_.end(), [](const Entry &a, const Entry &b) {

@@ -22,6 +22,8 @@ class SparseMatrix {
   PetscErrorCode clear() { return MatZeroEntries(matrix_); }
   /// Adds a dense block, `value` by rows; rows and columns with negative numbers are left out.
   PetscErrorCode add(PetscInt rows, const PetscInt *row, PetscInt columns, const PetscInt *column, const double *value);
+  /// The same of a square block that all ranks know: each adds the rows that it has.
+  PetscErrorCode add_here(PetscInt count, const PetscInt *row, const double *value);
   PetscErrorCode finish();  ///< sums up what was added since `clear`; collective
 
   operator Mat() const { return matrix_; }

@@ -26,10 +26,12 @@ PetscErrorCode QuasiStatic<dim>::activate_again() {
   PetscCall(soil_.activate(present_));
   PetscCall(supports_.setup(soil_.mesh(), soil_.nodes(), soil_.active(), sources_));
   PetscCall(bases_.activate());
+  PetscCall(structures_.activate());
+  structures_.set_bonds();
   loads_.activate();
   PetscCall(unknowns_.setup());
   for (auto *v : {&x_, &f_, &out_of_balance_, &target_, &lifted_}) PetscCall(soil_.nodes().global_vector(*v));
-  PetscCall(unknowns_.make_matrix(matrix_));
+  PetscCall(unknowns_.make_matrix(matrix_, [this] { return structures_.add_room(matrix_); }));
   PetscCall(make_solver());
   PetscFunctionReturn(0);
 }
@@ -90,6 +92,7 @@ PetscErrorCode QuasiStatic<dim>::residual(::Vec x, ::Vec f) {
   soil_.deform(u);
   soil_.internal_force(force, true);
   bases_.add_trial_force(u, force);
+  structures_.add_trial_force(u, force);
   PetscCall(soil_.nodes().add_to_global(force, f));
   PetscCall(VecNorm(f, NORM_2, &size));
   if (scale_open_) force_scale_ = std::max(force_scale_, size);
@@ -115,6 +118,7 @@ PetscErrorCode QuasiStatic<dim>::stiffness(double plastic, double elastic, const
   };
   PetscCall(soil_.each_stiffness(plastic, elastic, put));
   PetscCall(bases_.each_stiffness(plastic, elastic, put));
+  PetscCall(structures_.add_stiffness(plastic, elastic, matrix_, motion, lift));
   PetscCall(unknowns_.finish(matrix_, stiffness_scale_));
   PetscFunctionReturn(0);
 }
@@ -163,6 +167,7 @@ PetscErrorCode QuasiStatic<dim>::begin_path(double load_time) {
   PetscFunctionBeginUser;
   soil_.internal_force(internal, false);
   bases_.add_force(internal);
+  structures_.add_force(internal);
   loads_.force(load_time, external);
   const Vec<dim> now = std::exchange(loads_.acceleration, borne_acceleration_);
   loads_.force(load_time, unborne_, [this](int cell) { return soil_.stressed(cell); });
@@ -195,6 +200,7 @@ PetscErrorCode QuasiStatic<dim>::prepare(double share, double load_time, double 
   stopped_ = balanced_ = false, scale_open_ = true, trial_share_ = share, trial_load_time_ = load_time;
   soil_.find_suction(load_time);
   bases_.set_strength(load_time);
+  structures_.set_bonds();
   loads_.force(load_time, external);
   PetscCall(soil_.nodes().add_to_global(external, target_));
   PetscCall(VecNorm(target_, NORM_2, &force_scale_));
@@ -249,18 +255,30 @@ PetscErrorCode QuasiStatic<dim>::advance(double share, double load_time, double 
   SNESConvergedReason reason;
   PetscInt iterations;
   PetscFunctionBeginUser;
+  // of bonds, whose friction is that of the stress before, over all of them
+  constexpr double small_change = 1e-3;
+  constexpr int most_changes = 20;
   *outcome = {};
+  const auto built = structures_.save();
   int before = 0;  // iterations
   const auto search = [&](SNESLineSearchType along) -> PetscErrorCode {
     PetscFunctionBeginUser;
     if (std::string(along) != SNESLINESEARCHCP) PetscCall(make_solver(along));
+    structures_.restore(built);
     PetscCall(prepare(share, load_time, time, dt, x_));
-    PetscCall(SNESSolve(solver_, nullptr, x_));
-    PetscCall(SNESGetConvergedReason(solver_, &reason));
-    PetscCall(SNESGetIterationNumber(solver_, &iterations));
+    int total = 0;
+    for (int k = 0; k <= most_changes; ++k) {
+      PetscCall(SNESSolve(solver_, nullptr, x_));
+      PetscCall(SNESGetConvergedReason(solver_, &reason));
+      PetscCall(SNESGetIterationNumber(solver_, &iterations));
+      total += static_cast<int>(iterations);
+      double change = 0;
+      if (balanced_) structures_.follow_soil(&change);
+      if (change <= small_change) break;
+    }
     PetscCall(SNESGetFunctionNorm(solver_, &outcome->residual));
     PetscCall(VecNorm(x_, NORM_INFINITY, &outcome->largest));
-    outcome->iterations = before + static_cast<int>(iterations);
+    outcome->iterations = before + total;
     outcome->residual /= force_scale_ > 0 ? force_scale_ : 1;
     outcome->singular = reason == SNES_DIVERGED_LINEAR_SOLVE;
     // neither MUMPS nor the line search recovers from numbers that ran away
@@ -288,7 +306,20 @@ PetscErrorCode QuasiStatic<dim>::advance(double share, double load_time, double 
   if (!ended() && bases_.any() && !bare) PetscCall(relaxed());
   if (!ended() && bases_.any()) outcome->moved_most = moving_where_;
   outcome->converged = balanced_, outcome->stopped = stopped_;
-  if (outcome->converged) PetscCall(commit(x_, softening));
+  if (outcome->converged)
+    PetscCall(commit(x_, softening));
+  else
+    structures_.restore(built);  // nothing tears in a step that is not taken
+  PetscFunctionReturn(0);
+}
+
+template <int dim>
+PetscErrorCode QuasiStatic<dim>::follow_normal_forces(double *change) {
+  double of_bonds;
+  PetscFunctionBeginUser;
+  PetscCall(bases_.follow_normal_forces(change));
+  structures_.follow_soil(&of_bonds);
+  *change = std::max(*change, of_bonds);
   PetscFunctionReturn(0);
 }
 
@@ -309,7 +340,7 @@ PetscErrorCode QuasiStatic<dim>::commit(::Vec x, bool softening) {
   PetscCall(add_work(u, 0.5, forces, sums));
   soil_.deform(u);
   sums[0] = soil_.stress_work();
-  soil_.commit(u, softening), bases_.commit(u);
+  soil_.commit(u, softening), bases_.commit(u), structures_.commit(u);
   share_ = trial_share_, load_time_ = trial_load_time_, borne_acceleration_ = loads_.acceleration;
   PetscCall(working_forces(&forces));
   PetscCall(add_work(u, 0.5, forces, sums));
@@ -326,7 +357,7 @@ PetscErrorCode QuasiStatic<dim>::accept(::Vec x) {
   std::vector<double> u;
   PetscFunctionBeginUser;
   PetscCall(unknowns_.displacement_of(x, true, u));
-  soil_.accept(u, false), bases_.commit(u);
+  soil_.accept(u, false), bases_.commit(u), structures_.commit(u);
   PetscFunctionReturn(0);
 }
 
@@ -414,6 +445,7 @@ PetscErrorCode QuasiStatic<dim>::reactions(double load_time, std::vector<double>
   PetscFunctionBeginUser;
   soil_.internal_force(reaction, false);
   bases_.add_force(reaction, of_base);
+  structures_.add_force(reaction);
   loads_.force(load_time, external);
   for (size_t i = 0; i < reaction.size(); ++i) reaction[i] -= external[i];
   for (size_t i = 0; share_ < 1 && i < reaction.size(); ++i) reaction[i] += (1 - share_) * unborne_[i];

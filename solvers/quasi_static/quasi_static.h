@@ -14,6 +14,7 @@
 #include "solvers/quasi_static/hanging_pieces.h"
 #include "solvers/quasi_static/loads.h"
 #include "solvers/quasi_static/soil_elements.h"
+#include "solvers/quasi_static/structures_in_soil.h"
 #include "solvers/quasi_static/unknowns.h"
 
 namespace talus {
@@ -44,7 +45,7 @@ struct PathWork {
   double stress = 0;                ///< on the strains: the sum of all work
   double gravity = 0;               ///< and what else pulls on all mass
   std::vector<double> of_boundary;  ///< by loads, prescribed motion and bases
-  /// The rest: by pore pressure, body accelerations, and forces that were out of balance when a path began.
+  /// The rest: by pore pressure, body accelerations, structures, and forces that were out of balance when a path began.
   double imposed() const { return stress - gravity - std::accumulate(of_boundary.begin(), of_boundary.end(), 0.); }
 };
 
@@ -61,6 +62,7 @@ class QuasiStatic {
         soil_(mesh, scene, laws, data_),
         loads_(soil_, scene, sources, data_),
         bases_(soil_, sources),
+        structures_(soil_, supports_, data_.structures),
         unknowns_(soil_, supports_),
         borne_acceleration_(loads_.acceleration) {}
   QuasiStatic(const QuasiStatic &) = delete;  // its parts know each other's place
@@ -103,17 +105,25 @@ class QuasiStatic {
   const SoilElements<dim> &soil() const { return soil_; }
   const Supports<dim> &supports() const { return supports_; }
   BaseContact<dim> &bases() { return bases_; }
+  StructuresInSoil<dim> &structures() { return structures_; }
+  /// Friction of bases in trials, and of the bonds of structures, is that of the trial stress from now on. `change`: by
+  /// how much that changes it, over all of it [-]. Collective.
+  PetscErrorCode follow_normal_forces(double *change);
   /// A state of the soil and of its bases to come back to.
   struct State {
     typename SoilElements<dim>::State soil;
     typename BaseContact<dim>::State bases;
+    typename StructuresInSoil<dim>::State structures;
     double share, load_time;
     Vec<dim> borne_acceleration;
     PathWork work;
   };
-  State save() const { return {soil_.save(), bases_.save(), share_, load_time_, borne_acceleration_, work_}; }
+  State save() const {
+    return {soil_.save(), bases_.save(), structures_.save(), share_, load_time_, borne_acceleration_, work_};
+  }
   void restore(const State &state) {
-    soil_.restore(state.soil), bases_.restore(state.bases), work_ = state.work;
+    soil_.restore(state.soil), bases_.restore(state.bases), structures_.restore(state.structures);
+    work_ = state.work;
     share_ = state.share, load_time_ = state.load_time, borne_acceleration_ = state.borne_acceleration;
   }
   const PathWork &work() const { return work_; }
@@ -171,6 +181,7 @@ class QuasiStatic {
   Loads<dim> loads_;
   Supports<dim> supports_;
   BaseContact<dim> bases_;
+  StructuresInSoil<dim> structures_;
   Unknowns<dim> unknowns_;
   SparseMatrix matrix_;
   NonlinearSolver solver_;

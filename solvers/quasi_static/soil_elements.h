@@ -15,6 +15,8 @@ namespace talus {
 
 struct BodySource;
 enum class Elements;
+template <int dim>
+class Structures;
 
 /// What the problem takes from the rest of the program.
 template <int dim>
@@ -30,6 +32,8 @@ struct SoilData {
   bool open_water_load = true;
   /// Water whose pressure and weight the soil carries instead, where it flows; else null.
   const PoreFlow<dim> *flow = nullptr;
+  /// What is built into the soil, or null.
+  Structures<dim> *structures = nullptr;
 };
 
 /// The Gauss points of one body. Arrays have one row per point, those of a cell together.

@@ -59,7 +59,7 @@ template <int dim>
 PetscErrorCode search_associated(QuasiStatic<dim> &problem, const std::vector<Law> &laws, double load_time, double time,
                                  StepOutcome *outcome) {
   PetscFunctionBeginUser;
-  TrialStrength<dim> strength(problem.soil(), problem.bases(), laws);
+  TrialStrength<dim> strength(problem.soil(), problem.bases(), problem.structures(), laws);
   strength.set(1, TrialFlow::associated);
   LimitState<dim> limit(problem);
   LimitSearch found;
@@ -425,7 +425,7 @@ PetscErrorCode reduce_strength(QuasiStatic<dim> &problem, const std::vector<Law>
   for (const GaussPoints<dim> &p : problem.soil().points()) history.push_back(p.history);
   problem.soil().reset_displacement();
   for (size_t b = 0; b < history.size(); ++b) problem.soil().points()[b].history = history[b];
-  TrialStrength<dim> strength(problem.soil(), problem.bases(), laws);
+  TrialStrength<dim> strength(problem.soil(), problem.bases(), problem.structures(), laws);
   if (settings.flow) strength.take_undrained(undrained_strength(problem.soil(), *settings.flow, laws));
   for (size_t b = 0; b < settings.kept.size(); ++b)
     if (settings.kept[b]) strength.keep(b);

@@ -63,8 +63,9 @@ FrictionalPoint strength_of_trial(const FrictionalPoint &own, double factor, Tri
 }
 
 template <int dim>
-TrialStrength<dim>::TrialStrength(SoilElements<dim> &soil, BaseContact<dim> &bases, const std::vector<Law> &laws)
-    : soil_(soil), bases_(bases), laws_(laws) {
+TrialStrength<dim>::TrialStrength(SoilElements<dim> &soil, BaseContact<dim> &bases, StructuresInSoil<dim> &structures,
+                                  const std::vector<Law> &laws)
+    : soil_(soil), bases_(bases), structures_(structures), laws_(laws) {
   for (size_t b = 0; b < laws.size(); ++b) {
     const GaussPoints<dim> &p = soil.points()[b];
     OfBody &body = bodies_.emplace_back();
@@ -98,7 +99,7 @@ TrialStrength<dim>::TrialStrength(SoilElements<dim> &soil, BaseContact<dim> &bas
 
 template <int dim>
 void TrialStrength<dim>::restore() {
-  bases_.let_go();
+  bases_.let_go(), structures_.set_trial(1);
   for (size_t b = 0; b < bodies_.size(); ++b) {
     GaussPoints<dim> &p = soil_.points()[b];
     const OfBody &body = bodies_[b];
@@ -194,7 +195,7 @@ void TrialStrength<dim>::take_undrained(const std::vector<std::vector<Frictional
 
 template <int dim>
 void TrialStrength<dim>::set(double factor, TrialFlow flow) {
-  bases_.set_trial(factor);
+  bases_.set_trial(factor), structures_.set_trial(factor);
   for (size_t b = 0; b < bodies_.size(); ++b) {
     GaussPoints<dim> &p = soil_.points()[b];
     const OfBody &body = bodies_[b];

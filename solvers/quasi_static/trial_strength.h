@@ -6,6 +6,7 @@
 #include "solvers/quasi_static/factor_of_safety.h"
 #include "solvers/quasi_static/moving_soil.h"
 #include "solvers/quasi_static/soil_elements.h"
+#include "solvers/quasi_static/structures_in_soil.h"
 
 namespace talus {
 
@@ -29,8 +30,9 @@ bool has_energy(const Law &law);
 template <int dim>
 class TrialStrength {
  public:
-  /// Takes the present strength as the soil's own. `laws` are those of the bodies; all three must outlive it.
-  TrialStrength(SoilElements<dim> &soil, BaseContact<dim> &bases, const std::vector<Law> &laws);
+  /// Takes the present strength as the soil's own. `laws` are those of the bodies; all four must outlive it.
+  TrialStrength(SoilElements<dim> &soil, BaseContact<dim> &bases, StructuresInSoil<dim> &structures,
+                const std::vector<Law> &laws);
   /// Gives soil and bases their own strength back.
   void restore();
 
@@ -66,6 +68,7 @@ class TrialStrength {
   };
   SoilElements<dim> &soil_;
   BaseContact<dim> &bases_;
+  StructuresInSoil<dim> &structures_;
   const std::vector<Law> &laws_;
   std::vector<OfBody> bodies_;
 };

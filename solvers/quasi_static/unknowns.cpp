@@ -91,19 +91,22 @@ void Unknowns<dim>::set_motion(const std::vector<double> &motion) {
 // ---- matrices ----
 
 template <int dim>
-PetscErrorCode Unknowns<dim>::make_matrix(SparseMatrix &matrix) const {
+PetscErrorCode Unknowns<dim>::make_matrix(SparseMatrix &matrix, const std::function<PetscErrorCode()> &add_more) const {
   PetscFunctionBeginUser;
   const PetscInt rows = static_cast<PetscInt>(owned_.size()) * dim;
   std::vector<PetscInt> row;
   std::vector<double> zeros;
-  const auto fill = [&] {
-    return soil_.each_element([&](const int *node, int count) -> PetscErrorCode {
+  const auto fill = [&]() -> PetscErrorCode {
+    PetscFunctionBeginUser;
+    PetscCall(soil_.each_element([&](const int *node, int count) -> PetscErrorCode {
       PetscFunctionBeginUser;
       rows_of(node, count, row);
       zeros.resize(row.size() * row.size(), 0);
       PetscCall(matrix.add(count * dim, row.data(), count * dim, row.data(), zeros.data()));
       PetscFunctionReturn(0);
-    });
+    }));
+    PetscCall(add_more());
+    PetscFunctionReturn(0);
   };
   PetscCall(matrix.make(soil_.nodes().comm(), rows, rows, dim, fill));
   PetscFunctionReturn(0);

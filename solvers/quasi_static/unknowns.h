@@ -15,8 +15,8 @@ class Unknowns {
   /// Numbers the nodes that are there now. Collective.
   PetscErrorCode setup();
   long long count() const { return count_; }  ///< on all ranks
-  /// An empty matrix with room for the stiffness. Collective.
-  PetscErrorCode make_matrix(SparseMatrix &matrix) const;
+  /// An empty matrix with room for the stiffness of the soil and for what `add_more` adds. Collective.
+  PetscErrorCode make_matrix(SparseMatrix &matrix, const std::function<PetscErrorCode()> &add_more) const;
   /// Tells a matrix the rigid motions, for multigrid: zero where motion is prescribed. Collective.
   PetscErrorCode tell_rigid_motions(Mat matrix) const;
 

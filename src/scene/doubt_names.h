@@ -7,9 +7,11 @@ namespace talus {
 
 /// Keys with a usual range, and after `young_modulus` relations between things; between blanks.
 inline constexpr std::string_view doubt_names =
-    " adhesion air_entry attraction averaging_length baseline bulk_modulus cohesion compression_slope"
+    " adhesion air_entry attraction averaging_length baseline bond_adhesion bond_friction_angle bulk_modulus cohesion "
+    "compression_slope"
     " critical_stress_ratio curvature"
-    " damping damping_ratio decay_suction density dilation_angle displacement_tolerance drying_suction duration"
+    " damping damping_ratio decay_suction density diameter dilation_angle displacement_tolerance drying_suction "
+    "duration"
     " energy_ratio"
     " excess exponent failure_speed failure_time floor force_ratio fraction friction_angle gas_permeability"
     " grain_density grain_size gravity ground_damping ground_frequency heat_capacity high_pass hydraulic_conductivity"
@@ -18,9 +20,10 @@ inline constexpr std::string_view doubt_names =
     " peak permeability pic_fraction plasticity_index poisson_ratio"
     " pore_pressure_ratio pore_size_index porosity preconsolidation_pressure pressure reference_size"
     " reference_strain reference_suction relaxation residual_cohesion residual_dilation_angle residual_friction_angle"
-    " residual_saturation rest_speed rotation saturated_unit_weight scale seismic_coefficient shape shape_factor "
+    " residual_saturation rest_speed rotation rupture_strain saturated_unit_weight scale seismic_coefficient shape "
+    "shape_factor "
     "shear_modulus"
-    " smallest_step solid_density static_friction step_error storage suction suction_cohesion swelling_slope"
+    " smallest_step solid_density spacing static_friction step_error storage suction suction_cohesion swelling_slope"
     " tensile_strength tension_cutoff thermal_conductivity thermal_pressurisation thickness tolerance unit_weight velocity_tolerance"
     " viscosity void_ratio volume_cap yield_stress young_modulus base_slips brittle cavitation changing_table"
     " coarse_cells drainage drift dry_boundary dry_pond early_suction excess_alone faces_left film"

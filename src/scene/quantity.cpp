@@ -35,6 +35,8 @@ constexpr NamedUnit named_units[] = {
     {"Pa", 1, pressure, true},
     {"bar", 1e5, pressure, true},
     {"atm", 101325, pressure, false},
+    {"lbf", pound_force, force, false},
+    {"kip", 1e3 * pound_force, force, false},
     {"in", foot / 12, length, false},
     {"ft", foot, length, false},
     {"psf", pound_force / (foot * foot), pressure, false},

@@ -9,6 +9,7 @@
 #include "scene/doubt_names.h"
 #include "scene/quantity.h"
 #include "scene/reader.h"
+#include "scene/structure_checks.h"
 #include "scene/tables.h"
 #include "scene/words.h"
 
@@ -43,6 +44,7 @@ class Checks {
       if (scene_.stage[i].name.empty()) scene_.stage[i].name = std::to_string(i);
     for (std::size_t i = 0; i < scene_.stage.size(); ++i) stage(scene_.stage[i], "stage." + std::to_string(i));
     for (const BodySource &body : scene_.body) damping_ratio("body." + body.name, body);
+    check_structures(scene_, reader_);
     bodies_that_come_and_go();
     ground_motion();
     factor_of_safety();
@@ -516,7 +518,8 @@ class Checks {
                        "must name a point of [output.point.NAME]; " + suggestion(until.failure_point, points));
   }
 
-  /// A stage adds bodies that are not there, and removes bodies that are. A body that some stage adds is absent before.
+  /// A stage adds bodies and structures that are not there, and removes those that are. What some stage adds is absent
+  /// before.
   void bodies_that_come_and_go() const {
     std::vector<std::string> absent;
     for (const Stage &stage : scene_.stage)
@@ -528,28 +531,34 @@ class Checks {
       if (!keys) continue;
       for (const std::string &name : keys->add) {
         if (std::find(absent.begin(), absent.end(), name) == absent.end())
-          reader_.complain(path + ".add", "adds body." + name + ", which is there already: leave it out");
+          reader_.complain(path + ".add", "adds " + kind_of(name) + name + ", which is there already: leave it out");
         std::erase(absent, name);
       }
       for (const std::string &name : keys->remove) {
         if (std::find(absent.begin(), absent.end(), name) != absent.end())
-          reader_.complain(path + ".remove", "removes body." + name +
-                                                 ", which is not there: leave it out (a body that a stage adds is "
+          reader_.complain(path + ".remove", "removes " + kind_of(name) + name +
+                                                 ", which is not there: leave it out (what a stage adds is "
                                                  "absent before that stage)");
         absent.push_back(name);
       }
     }
   }
 
-  /// Bodies that come and go with a stage.
+  std::string kind_of(const std::string &name) const {
+    const bool body = std::ranges::any_of(scene_.body, [&](const BodySource &one) { return one.name == name; });
+    return body ? "body." : "structure.";
+  }
+
+  /// Bodies and structures that come and go with a stage.
   void bodies_of(const StaticKeys &keys, const std::string &path) const {
-    std::vector<std::string> bodies;
-    for (const BodySource &body : scene_.body) bodies.push_back(body.name);
+    std::vector<std::string> names;
+    for (const BodySource &body : scene_.body) names.push_back(body.name);
+    for (const StructureSource &structure : scene_.structure) names.push_back(structure.name);
     for (const auto &[key, named] : {std::pair{".add", &keys.add}, {".remove", &keys.remove}})
       for (const std::string &name : *named)
-        if (std::find(bodies.begin(), bodies.end(), name) == bodies.end())
-          reader_.complain(path + key,
-                           "must name bodies; there is no [body." + name + "]; " + suggestion(name, bodies));
+        if (std::find(names.begin(), names.end(), name) == names.end())
+          reader_.complain(path + key, "must name bodies or structures; there is no [body." + name + "]; " +
+                                           suggestion(name, names));
   }
 
   /// Opposite corners, the smaller coordinates first.

@@ -27,6 +27,7 @@ struct QuasiStaticSource;
 struct RigidSource;
 struct Stage;
 struct StartFrom;
+struct StructureSource;
 struct Transfer;
 struct Water;
 
@@ -53,6 +54,7 @@ struct Scene {
   std::vector<BoundarySource> boundary;
   std::vector<RigidSource> rigid;
   std::vector<ContactSource> contact;
+  std::vector<StructureSource> structure;
   Boxed<Water> water;
   Boxed<Gas> gas;
   std::vector<Stage> stage;

@@ -14,6 +14,7 @@
 #include "scene/scene.h"
 #include "scene/stage.h"
 #include "scene/start_from.h"
+#include "scene/structure_source.h"
 #include "scene/transfer_source.h"
 #include "scene/water_source.h"
 
@@ -41,6 +42,7 @@ void Scene::fields(Visitor &&v) {
   v.named("boundary", boundary, "conditions on named groups of facets, [boundary.NAME]");
   v.named("rigid", rigid, "rigid bodies and walls that soil meets, [rigid.NAME]");
   v.named("contact", contact, "contact between two groups of bodies, [contact.NAME]");
+  v.named("structure", structure, "anchors, nails and geogrids in the soil, [structure.NAME]");
   v.table("water", *water, "pore water");
   v.table("gas", *gas, "pore gas");
   v.list("stage", stage, "stages in their order, [[stage]]");

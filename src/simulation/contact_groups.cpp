@@ -12,6 +12,7 @@
 #include "scene/rigid_source.h"
 #include "scene/scene.h"
 #include "scene/stage.h"
+#include "scene/structure_source.h"
 #include "scene/words.h"
 #include "simulation/dynamics.h"
 
@@ -83,6 +84,8 @@ void check_scope(const Scene &scene, bool host) {
   }
   for (const RigidSource &source : scene.rigid)
     scene.complain("rigid." + source.name, "cannot act" + beside + ": a node meets one of them, a body or a group");
+  for (const StructureSource &source : scene.structure)
+    scene.complain("structure." + source.name, "cannot act" + beside + ": it is bonded to the ground of one group");
 }
 
 }  // namespace

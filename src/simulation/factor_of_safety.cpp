@@ -277,6 +277,7 @@ template <int dim>
 void FactorStage<dim>::begin() {
   const Stage *before = stage_before();
   run_.clock.stage = stage_.name;
+  if (run_.world.structures) run_.world.structures->begin_stage(stage_);
   run_.recorder.begin_stage(stage_);
   if (run_.options.resume) {
     QuasiStatic<dim> &problem = run_.statics.problem();

@@ -17,6 +17,7 @@
 #include "scene/rigid_source.h"
 #include "scene/scene.h"
 #include "scene/stage.h"
+#include "scene/structure_source.h"
 #include "scene/water_source.h"
 #include "simulation/changing_loads.h"
 #include "simulation/dynamics.h"
@@ -173,6 +174,7 @@ class Model {
     all["water"]["line"] = line_of_no_pressure();
     all["water"]["surface"] = water_surface();
     all["rigid"] = rigid_bodies();
+    if (!scene_.structure.empty()) all["structures"] = structures();
     all["stages"] = list(scene_.stage, [&](Stage stage) { return stage_of(stage); });
     all["points"] = list(scene_.output->point, point);
     all["lines"] = list(scene_.output->line, line);
@@ -198,6 +200,12 @@ class Model {
       const auto centre =
           source.centre.empty() ? RigidShape<2>(source.polygon).centre() : Vec<2>{source.centre[0], source.centre[1]};
       return Json{{"name", source.name}, {"polygon", source.polygon}, {"centre", centre}};
+    });
+  }
+
+  Json structures() const {
+    return list(scene_.structure, [](const StructureSource &source) {
+      return Json{{"name", source.name}, {"kind", source.kind_name()}, {"points", source.bar().points}};
     });
   }
 

@@ -19,6 +19,7 @@
 #include "physics/boundary/soil_contact.h"
 #include "physics/laws/present_strength.h"
 #include "physics/laws/strength_by_place.h"
+#include "physics/structures/structures.h"
 #include "simulation/energy_sums.h"
 
 namespace talus {
@@ -228,6 +229,13 @@ struct ContactRow {
   double elapsed = 0;  ///< since the row before [s]
 };
 
+/// A structure in history.csv, in the forces of one bar.
+template <int dim>
+struct StructureRow {
+  std::string name;
+  typename Bar<dim>::Report report{};
+};
+
 /// Motion of the ground: of the base or, where a wave comes in, of the outcrop that [[earthquake]] states [m/s2],
 /// [m/s], [m].
 struct GroundRow {
@@ -251,6 +259,7 @@ struct RunRow {
   std::vector<BoundaryRow<dim>> boundaries;
   std::vector<RigidRow<dim>> rigid;
   std::vector<ContactRow<dim>> contacts;
+  std::vector<StructureRow<dim>> structures;
 
   /// Calls column(HistoryColumn, value) for each column, in the order of the file.
   template <class Visitor>
@@ -339,6 +348,14 @@ struct RunRow {
     };
     for (std::size_t k = 0; k < contacts.size(); ++k)
       joules("work_" + contacts[k].name, behind_boundaries(rigid.size() + k));
+    for (const StructureRow<dim> &s : structures) {
+      const auto of_structure = [&](const string &quantity, const string &unit, double value) {
+        column(column_of("structure", s.name, quantity, unit), value);
+      };
+      of_structure("head_force", "N", s.report.head), of_structure("axial_force", "N", s.report.largest);
+      of_structure("bond_slip", "m", s.report.slip), of_structure("slipping", "-", s.report.slipping);
+      of_structure("utilisation", "-", s.report.utilisation);
+    }
     for (std::size_t k = 0; k < rigid.size(); ++k)
       joules("work_" + rigid[k].name, behind_boundaries(k));
     for (std::size_t s = 0; s < boundaries.size(); ++s)

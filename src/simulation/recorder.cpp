@@ -32,6 +32,7 @@ Recorder<dim>::Recorder(const Sources<dim> &of, const RunOptions &options)
       phases_(of.world.phases),
       options_(options),
       point_rows_(of.world, of.points),
+      structures_(of.world.comm, of.world.structures.get()),
       ends_(of.world),
       ground_path_(of.world.shaking) {
   check_pictures();
@@ -54,6 +55,7 @@ void Recorder<dim>::open() {
                            EventFile(of_.world.comm, options_.directory, events_)});
   write_model(), write_columns();
   of_.lines.open(options_.directory);
+  structures_.open(options_.directory);
   for (const std::string &sentence : of_.lines.left_out()) note(sentence);
   for (const std::string &sentence : of_.points.far_off()) warn(sentence);
   write_escaped();  // in place of that of a run that was here before
@@ -105,6 +107,7 @@ void Recorder<dim>::append(std::unique_ptr<ResultsFolder> folder) {
                            EventFile(of_.world.comm, options_.directory, events_)});
   write_model(), write_columns();
   of_.lines.append(options_.directory, last_row_time_);
+  structures_.append(options_.directory, last_row_time_);
   results_->progress.resume(of_.clock.time, of_.clock.steps);
   note("resumed at t = " + rounded(of_.clock.time) + " s, step " + std::to_string(of_.clock.steps), event::resumed,
        {{"step", of_.clock.steps}});
@@ -252,6 +255,8 @@ RunRow<dim> Recorder<dim>::run_row() const {
   for (const RigidSource &source : scene_.rigid) row.rigid.push_back({source.name});
   if (world.conditions.soil_contact())
     for (const ContactSource &source : scene_.contact) row.contacts.push_back({source.name});
+  if (world.structures)
+    for (const Bar<dim> &bar : world.structures->bars()) row.structures.push_back({bar.name, bar.report()});
   return row;
 }
 
@@ -262,6 +267,7 @@ void Recorder<dim>::write_history() {
   of_.world.count_cells();
   std::vector<double> row = point_rows_.at(of_.clock.time, of_.statics);
   of_.lines.write(of_.clock, of_.statics);
+  structures_.write(of_.clock);
   last_row_step_ = of_.clock.steps, last_row_time_ = of_.clock.time;
   note_imbalance();
   RunRow<dim> run = run_row();

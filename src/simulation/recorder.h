@@ -20,6 +20,7 @@
 #include "simulation/followed_lines.h"
 #include "simulation/mesh_ends.h"
 #include "simulation/statics.h"
+#include "simulation/structure_tables.h"
 #include "simulation/tracked_points.h"
 
 namespace talus {
@@ -150,6 +151,7 @@ class Recorder {
   FluidBooks fluids_;
   double impulse_time_ = 0;  ///< since when forces are means [s]
   PointRows<dim> point_rows_;
+  StructureTables<dim> structures_;
   MeshEnds<dim> ends_;
   GroundPath ground_path_;
   long long shaken_before_ = 0;       ///< stages before the present one through which the motion has gone

@@ -59,6 +59,7 @@ void Statics<dim>::make() {
   data.density = [this](const BodySource &source, const Vec<dim> &x, double t) {
     return world_.soil_density(source, x, t);
   };
+  data.structures = world_.structures.get();
   data.open_water_load = world_.scene.water->open_water_load;
   if (world_.phases.prescribed) {
     data.pressure = [this](const Vec<dim> &x, double t, int soil) { return world_.pressure(x, t, soil); };
@@ -128,14 +129,32 @@ void Statics<dim>::begin_stage(const Stage &stage, bool soil_moves) {
   const double before = strain_energy();
   world_.choose_bodies(stage, clock_);
   choose_laws(stage);
+  if (world_.structures) world_.structures->begin_stage(stage);
   require(activate());
   require(world_.fix_dashpots(true, clock_.time));
   current_ = true, moved_since_ = false;
   check_supports(soil_moves);
   if (stage.begins_at_rest()) start_stress();
+  check_structures();
   imposed_ += strain_energy() - before;
   problem_->set_acceleration(world_.scene.acceleration_in(stage));
   require(problem_->begin_path(clock_.load_time));
+}
+
+/// Structures lie in soil when they come, and their bond holds the prestress.
+template <int dim>
+void Statics<dim>::check_structures() const {
+  if (!world_.structures) return;
+  for (const Bar<dim> &bar : world_.structures->bars())
+    for (int i = 0; bar.fresh && i < bar.points(); ++i)
+      if (!bar.in_soil[i]) {
+        std::ostringstream place;
+        for (int d = 0; d < dim; ++d) place << (d ? ", " : "(") << bar.place[i][d];
+        world_.scene.complain(
+            "structure." + bar.name + ".points",
+            "must lie in the soil that is there when the structure comes, and " + place.str() + ") m does not");
+      }
+  if (const std::string weak = problem_->structures().too_weak_for_prestress(); !weak.empty()) throw RunFailure(weak);
 }
 
 template <int dim>

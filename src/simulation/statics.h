@@ -97,6 +97,7 @@ class Statics {
   void choose_laws(const Stage &stage);
   static void let_water_go(GaussPoints<dim> &points);
   void check_supports(bool soil_moves) const;
+  void check_structures() const;
   void start_stress();  // initial_stress.cpp
   void to_gauss_points();
   void check_places() const;

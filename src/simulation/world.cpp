@@ -405,6 +405,7 @@ PetscErrorCode World<dim>::serialize(Archive &archive) {
   }
   set_friction_delay();
   escaped.serialize(archive);
+  if (structures) structures->serialize(archive);
   for (const auto &body : bodies) PetscCall(body->serialize(archive, mesh));
   PetscCall(motion->serialize(archive));
   archive.sums("movers", counts_.movers);

@@ -15,6 +15,7 @@
 #include "physics/laws/strength_by_place.h"
 #include "physics/phase_models.h"
 #include "physics/prescribed_pressure.h"
+#include "physics/structures/structures.h"
 #include "scene/scene.h"
 #include "simulation.h"
 #include "simulation/clock.h"
@@ -114,6 +115,7 @@ class World {
   std::vector<std::unique_ptr<Body<dim>>> bodies;
   std::vector<char> present;  ///< bodies that are there now
   Conditions<dim> conditions;
+  std::unique_ptr<Structures<dim>> structures;  ///< null where the scene has none
   std::unique_ptr<AnySoilMotion<dim>> motion;
   long long particle_count = 0;            ///< of all ranks
   long long cell_count = 0;                ///< of all ranks, that held soil when they were last counted
@@ -130,6 +132,7 @@ class World {
   void take_rigid_bodies();
   void separate_groups();
   void take_soil_contact();
+  void take_structures();
   void tie_sides(const std::vector<Source> &sources, bool complains);
   void find_mesh_box();
   void check_bodies() const;                                        // world_checks.cpp

@@ -91,8 +91,7 @@ void World<dim>::divide(const Cuts &cuts) {
   tie_sides(sources, false);
   conditions = Conditions<dim>();
   require(conditions.setup(mesh, std::move(sources)));
-  take_rigid_bodies();
-  take_soil_contact();
+  take_rigid_bodies(), take_soil_contact(), take_structures();
   conditions.use_stand_ins(stand_ins), conditions.bases().remember_slip(loading.softening);
   pressure.set_regions(bodies_of_cells(mesh, scene));
   set_pore_pressure_ratios();

@@ -9,6 +9,7 @@
 #include "physics/boundary/rigid_bodies.h"
 #include "physics/laws/drainage.h"
 #include "physics/boundary/soil_contact.h"
+#include "physics/structures/structures_in_motion.h"
 #include "scene/body_source.h"
 #include "scene/boundary_source.h"
 #include "scene/contact_source.h"
@@ -18,10 +19,12 @@
 #include "scene/rigid_source.h"
 #include "scene/scene.h"
 #include "scene/stage.h"
+#include "scene/structure_source.h"
 #include "scene/transfer_source.h"
 #include "scene/water_source.h"
 #include "scene/words.h"
 #include "simulation/contact_groups.h"
+#include "simulation/dynamics.h"
 #include "simulation/gap_walls.h"
 #include "simulation/rigid_checks.h"
 #include "simulation/shaken_supports.h"
@@ -53,6 +56,7 @@ World<dim>::World(MPI_Comm world, const Scene &of, DM plex, const std::string &m
   require(conditions.setup(mesh, std::move(sources)));
   take_rigid_bodies();
   take_soil_contact();
+  take_structures();
   check_gap_walls(*this);
   conditions.use_stand_ins(scene.stage.front().hold_loads);
   pressure.set_regions(bodies_of_cells(mesh, scene));
@@ -200,6 +204,17 @@ void World<dim>::tie_sides(const std::vector<Source> &sources, bool complains) {
   const Ties ties = find_ties<dim>(mesh, sources);
   if (complains && !ties.fault.empty()) scene.complain("boundary." + sources[ties.source].name + ".group", ties.fault);
   mesh.tie(ties.groups);
+}
+
+template <int dim>
+void World<dim>::take_structures() {
+  if (scene.structure.empty()) return;
+  const bool moves = std::ranges::any_of(scene.stage, [](const Stage &stage) { return stage.motion(); });
+  if (moves && !std::holds_alternative<EulerSettings>(choose_integrator(scene)))
+    scene.complain("integrator.kind", "must be \"euler\" beside structure." + scene.structure[0].name +
+                                          ", whose force acts once in a step");
+  if (!structures) structures = std::make_unique<Structures<dim>>(mesh, scene, laws);
+  conditions.take_structures(std::make_unique<StructuresInMotion<dim>>(mesh, *structures));
 }
 
 template <int dim>
@@ -473,6 +488,8 @@ template int World<2>::id_stride() const;
 template int World<3>::id_stride() const;
 template void World<2>::settle_bodies();
 template void World<3>::settle_bodies();
+template void World<2>::take_structures();
+template void World<3>::take_structures();
 template void World<2>::take_rigid_bodies();
 template void World<3>::take_rigid_bodies();
 template void World<2>::separate_groups();

@@ -12,15 +12,18 @@
 #include "tests/verification/dynamic_oedometer/exact.h"
 #include "tests/verification/elastic_bar/exact.h"
 #include "tests/verification/fem_at_rest/exact.h"
+#include "tests/verification/fem_bar/exact.h"
 #include "tests/verification/fem_consolidation/exact.h"
 #include "tests/verification/fem_cylinder/exact.h"
 #include "tests/verification/fem_dam/exact.h"
 #include "tests/verification/fem_elastic_slope/exact.h"
 #include "tests/verification/fem_footing/exact.h"
+#include "tests/verification/fem_geogrid/exact.h"
 #include "tests/verification/fem_infiltration/exact.h"
 #include "tests/verification/fem_hoek_brown/exact.h"
 #include "tests/verification/fem_infinite_slope/exact.h"
 #include "tests/verification/fem_mandel_cryer/exact.h"
+#include "tests/verification/fem_nailed_wall/exact.h"
 #include "tests/verification/fem_slope/exact.h"
 #include "tests/verification/fem_tension_crack/exact.h"
 #include "tests/verification/fem_vertical_cut/exact.h"
@@ -112,6 +115,10 @@ inline constexpr LadderEntry ladder[] = {
     {"footing", "verification", "bearing capacity of Tresca soil, where cells could lock", rungs::footing},
     {"fem_elastic_slope", "verification", "settlement of an elastic slope, on finer meshes and in a slice",
      rungs::fem_elastic_slope},
+    {"fem_bar", "verification", "load transfer between a bar and elastic soil by finite elements", rungs::fem_bar},
+    {"fem_nailed_wall", "verification", "factor of safety of a nailed wall by finite elements", rungs::fem_nailed_wall},
+    {"fem_geogrid", "verification", "factor of safety of an embankment on a geogrid by finite elements",
+     rungs::fem_geogrid},
     {"fem_footing", "verification", "bearing capacity of Tresca soil by finite elements", rungs::fem_footing},
     {"fem_vertical_cut", "verification", "height at which a vertical cut fails, by strength reduction",
      rungs::fem_vertical_cut},

@@ -10,6 +10,7 @@ import textwrap
 
 import matplotlib.pyplot as plt
 import numpy as np
+import talus_structures
 import talus_style as style
 from matplotlib.collections import LineCollection, PolyCollection
 from talus_modelled import WATER, Model, notes, outline, stage_rows
@@ -155,6 +156,8 @@ def section(model):
         corners = np.array(body["polygon"])
         axes.fill(*corners.T, facecolor=style.FAINT, edgecolor=style.INK, linewidth=1.2, zorder=4)
         movable(axes.text(*body["centre"], body["name"], ha="center", va="center", zorder=8, fontsize=9, path_effects=[WHITE]), [body["centre"]])
+    for text, middle in talus_structures.draw_model(axes, model):
+        movable(text, [middle])
     water(axes, model, symbols, low, high)
     named_points(axes, model, np.asarray)
     dimensions(axes, model, low, high, metres)

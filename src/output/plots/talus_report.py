@@ -19,6 +19,7 @@ from talus_outcomes import in_words, outcome
 from talus_play import ROWS
 from talus_results import NOT_ENDED, read_factor
 from talus_sliding import SLOW, largest_displacement, sliding, still_moving
+from talus_structures import rows as structure_rows
 from talus_units import Keys, at_time, brief, capital, text_of, thousands, words
 from talus_workbook import write_workbook
 
@@ -68,6 +69,7 @@ def write_report(results, model, drawn):
         section("Factor of safety", factor_block(read_factor(results), [one for one in drawn.factor if one[0] != MECHANISM_AND_SURFACE])),
         section("Before the strength is reduced", slide if first != slide else ""),
         section("Sections", "".join(field_block(*one) for one in drawn.sections)),
+        section("Structures", structure_block(results)),
         section("Histories", grid(drawn.histories), "curves"),
         section("Model", model_block(model, drawn.model)),
         summary(results, model),
@@ -382,6 +384,15 @@ def section(name, content, own=""):
 def field_block(field, large, over_time):
     name = capital(words(field))
     return f'<div class="field">{picture(large, name)}{picture(over_time, f"{name} over time") if over_time else ""}</div>'
+
+
+def structure_block(results):
+    """What the structures in the soil bear."""
+    rows = structure_rows(results)
+    if not rows:
+        return ""
+    note = "Forces are those of one bar, or of a metre of a geogrid. structure_NAME.csv has them along each structure."
+    return f'<div class="tables">{lined_table("What they bear", rows)}</div><p>{note}</p>'
 
 
 def factor_block(factor, pictures):

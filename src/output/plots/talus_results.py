@@ -319,7 +319,7 @@ class Line(OverTime):
 
     @of_file
     def __init__(self, path):
-        self.name = path.stem[len("line_"):]
+        self.name = path.stem.split("_", 1)[1]
         with open(path, newline="") as file:
             rows = list(csv.DictReader(file))
         self.stage = [row["stage"] for row in rows]
@@ -454,6 +454,11 @@ class Results:
         lines = map(Line, sorted(self.folder.glob("line_*.csv")))
         left_out = getattr(self, "_without", None)
         return {line.name: line.without(left_out) for line in lines}
+
+    @functools.cache
+    def structures(self):
+        """Structures in the soil, structure_NAME.csv: {name: Line}, whose places are the middles of its elements."""
+        return {line.name: line for line in map(Line, sorted(self.folder.glob("structure_*.csv"))) if len(line.time)}
 
     def model(self):
         """What was modelled, as run/model.json has it: soils, mesh, boundaries, water, points, stages. Raises FileNotFoundError."""

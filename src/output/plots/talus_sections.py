@@ -8,6 +8,7 @@ from matplotlib.patheffects import withStroke
 from matplotlib.ticker import MaxNLocator
 from matplotlib.transforms import offset_copy
 
+import talus_structures
 import talus_style as style
 from talus_colours import Colours
 from talus_factor import short
@@ -264,6 +265,8 @@ class Painter:
                 self.drawn_outline = True
         for corners in self.results.rigid_outlines(snapshot.time).values() if self.flat else []:
             axes.fill(*corners.T, facecolor=style.FAINT, edgecolor=style.INK, linewidth=1.0, zorder=3)
+        if self.flat:
+            talus_structures.draw(axes, self.results, snapshot.time)
         if alone and self.flat:
             for name, line, dash in self.slips:
                 axes.plot(*line.T, color="white", lw=3.2)

@@ -13,7 +13,7 @@ enum class WhenLost { stop, go_on };
 struct StaticKeys {
   int load_steps = 5;  ///< in which loads come; fewer or more as Newton's iterations ask for
   InitialStress initial_stress = InitialStress::kept;
-  std::vector<std::string> add, remove;  ///< bodies that come and go with the stage
+  std::vector<std::string> add, remove;  ///< bodies and structures that come and go with the stage
   WhenLost when_lost = WhenLost::stop;
   template <class Visitor>
   void fields(Visitor &&v) {
@@ -23,8 +23,8 @@ struct StaticKeys {
     v.choice("initial_stress", initial_stress, {{"kept", InitialStress::kept}, {"k0", InitialStress::k0}},
              "quasi-static: stress at the start of the stage: the present stress, or vertical stress from the weight "
              "above and k0 times it laterally");
-    v.texts("add", add, "quasi-static: bodies that this stage adds; they are absent before it");
-    v.texts("remove", remove, "quasi-static: bodies that this stage removes");
+    v.texts("add", add, "quasi-static: bodies and structures that this stage adds; they are absent before it");
+    v.texts("remove", remove, "quasi-static: bodies and structures that this stage removes");
     v.choice(
         "when_lost", when_lost, {{"stop", WhenLost::stop}, {"next_stage", WhenLost::go_on}},
         "quasi-static: if there is no equilibrium under the loads, end with status 1 or continue with the next stage");

@@ -42,6 +42,7 @@ class DynamicStage final : public StageRunner<dim> {
     run_.statics.leave();
     require(run_.world.fix_dashpots(stage_.hold_loads, run_.clock.time));
     run_.clock.stage = stage_.name;
+    if (run_.world.structures) run_.world.structures->begin_stage(stage_);
     run_.recorder.begin_stage(stage_);
     run_.dynamics.restart();
     const std::string point = run_.stop->watched_point();
@@ -97,8 +98,22 @@ class DynamicStage final : public StageRunner<dim> {
     run_.recorder.write_history();
     run_.recorder.write_snapshot();
     run_.write_checkpoint();
+    note_softened();
     if (run_.last_stage()) find_motion_left();  // before a reset sets it to zero
     if (stage_.reset_displacement) note_reset(), run_.end_by_reset();
+  }
+
+  /// Bars that motion has computed softer than they are, so that they do not shorten its steps.
+  void note_softened() {
+    if (!run_.world.structures) return;
+    for (const Bar<dim> &bar : run_.world.structures->bars()) {
+      if (bar.softened >= 1) continue;
+      std::ostringstream text;
+      text.precision(2);
+      text << "structure." << bar.name << " moved with at least " << 100 * bar.softened
+           << " % of its stiffness, so that it does not shorten the step; its capacities are its own";
+      run_.recorder.note(text.str());
+    }
   }
 
   void note_reset() {
