@@ -83,17 +83,6 @@ def share_of_loads(results, stage):
 
 # ---- motion ----
 
-@measure
-def angle_of_reach(results):
-    """Angle whose tangent is the fall over the travel distance of the slide [deg]."""
-    return slide(results).reach()
-
-
-@measure
-def area_of_deposit(results):
-    """Area of the deposit of a run in 3D [m2]."""
-    return slide(results).area
-
 
 @measure
 def displacement(results, point, stage=None):
@@ -110,12 +99,6 @@ def largest_speed(results, point):
 
 
 @measure
-def end_time(results):
-    """Time at which the run ended [s]."""
-    return results.history.time[-1]
-
-
-@measure
 def front(results, share=0.995):
     """The x behind which this share of the mass lies at the end [m]."""
     x, mass = results.snapshots[-1].position()[:, 0], results.snapshots[-1].column("mass").values[:, 0]
@@ -127,27 +110,6 @@ def front(results, share=0.995):
 def end_of_stage(results, stage):
     """Time at which a stage ended [s]."""
     return max(time for time, name in zip(results.history.time, results.history.stage) if name == stage)
-
-
-@measure
-def largest_x_moved(results, by=1.0, beyond=0.0):
-    """How far beyond an x soil that has moved by more than `by` is at the end [m]."""
-    last = results.snapshots[-1]
-    return last.position()[last.scalar("displacement")[0] > by, 0].max() - beyond
-
-
-@measure
-def share_moved(results, by=1.0):
-    """Share of the particles that have moved by more than `by` at the end."""
-    return (results.snapshots[-1].scalar("displacement")[0] > by).mean()
-
-
-@measure
-def largest_displacement_near(results, place, within, at_snapshot=0):
-    """Largest displacement at the end of soil that was within this distance of a place in an early snapshot [m]."""
-    start, last = results.snapshots[at_snapshot].position(), results.snapshots[-1]
-    near = np.linalg.norm(start[:, : len(place)] - place, axis=1) < within
-    return last.scalar("displacement")[0][near].max()
 
 
 @measure
