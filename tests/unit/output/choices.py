@@ -1087,7 +1087,7 @@ class SlipSurface(unittest.TestCase):
                                                                               "factor_of_safety": {"decided": True, "value": 1.2345}}))
                 soil = Moved()
                 results = types.SimpleNamespace(snapshots=[soil], up_axis=lambda: 1, mesh=lambda: (np.zeros((0, 2)), np.zeros((0, 3), int)), scene={}, folder=folder, bodies=["clay"],
-                                                escaped=None, history=None, title="slope", when=lambda one: f"t = {one.time} s", rigid_outlines=lambda time: {})
+                                                escaped=None, history=None, title="slope", when=lambda one: f"t = {one.time} s", rigid_outlines=lambda time: {}, structures=dict)
                 sheets = []
                 with unittest.mock.patch.object(talus_sections.style, "save", lambda figure, path: sheets.append(figure)):
                     for draw in talus_sections.section_tasks(results, ["displacement"], None, folder):
