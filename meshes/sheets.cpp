@@ -34,8 +34,8 @@ long long end_of(MPI_Comm comm, const std::vector<long long> &numbers) {
 
 template <int dim>
 PetscErrorCode BackgroundMesh<dim>::divide_into_sheets(const std::vector<std::vector<std::string>> &regions_of_sheets) {
-  const int sheets = static_cast<int>(regions_of_sheets.size()), cell_number = cell_count(),
-            node_number = node_count(), faces = static_cast<int>(partition_faces.size()), patches = patch_count;
+  const int sheets = static_cast<int>(regions_of_sheets.size()), cell_number = cell_count(), node_number = node_count(),
+            faces = static_cast<int>(partition_faces.size()), patches = patch_count;
   PetscFunctionBeginUser;
   std::vector<int> sheet_of(cell_number, 0);
   for (int s = 1; s < sheets; ++s)

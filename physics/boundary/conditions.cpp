@@ -7,8 +7,8 @@
 #include "physics/boundary/node_normals.h"
 #include "physics/boundary/rigid_bodies.h"
 #include "physics/boundary/soil_contact.h"
-#include "scene/contact_source.h"
 #include "physics/structures/structures_in_motion.h"
+#include "scene/contact_source.h"
 #include "scene/rigid_source.h"
 
 namespace talus {

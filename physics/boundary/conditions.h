@@ -22,7 +22,7 @@ namespace talus {
 template <int dim>
 class RigidBodies;  // physics/boundary/rigid_bodies.h
 template <int dim>
-class SoilContact;  // physics/boundary/soil_contact.h
+class SoilContact;         // physics/boundary/soil_contact.h
 class StructuresInMotion;  // physics/structures/structures_in_motion.h
 
 template <int dim>
@@ -90,8 +90,8 @@ class Conditions {
     for (Dashpot &d : active_dashpots_)
       if (sources_[d.source].kind.incoming_wave) d.beyond = velocity;
   }
-  /// Applies contact between groups, dashpots, contact with friction, prescribed velocities and rigid bodies, implicitly
-  /// over a step gamma, and sums up the reactions. Collective.
+  /// Applies contact between groups, dashpots, contact with friction, prescribed velocities and rigid bodies,
+  /// implicitly over a step gamma, and sums up the reactions. Collective.
   PetscErrorCode resolve(double t, double gamma, const FilledGrid<dim> &grid, Vec<dim> *v, const Pores &pores = {});
 
   /// Adds the work of the boundaries in an accepted step with nodal displacements `u`, and what bases remember of it;

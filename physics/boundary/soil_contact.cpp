@@ -12,9 +12,10 @@ namespace talus {
 namespace {
 
 constexpr int smoothing_passes = 4;
-constexpr double stiff = 1e-6;         // mobility of nodes that cannot give way, over that of their masses
-constexpr double open_area = 0.1;      // added to the area over which a gap is spread, in units of the cell's face
-constexpr double touching = 0.5;        // gap below which groups touch at the start, in units of the cell size: ends read open
+constexpr double stiff = 1e-6;     // mobility of nodes that cannot give way, over that of their masses
+constexpr double open_area = 0.1;  // added to the area over which a gap is spread, in units of the cell's face
+constexpr double touching =
+    0.5;  // gap below which groups touch at the start, in units of the cell size: ends read open
 /// Weight of a node beside its neighbours, each of which counts once for each cell that has both.
 template <int dim>
 constexpr double own_weight = dim == 2 ? 2 : 5;

@@ -45,8 +45,8 @@ class SoilContact {
   };
   /// Applies the impulses of a step to the nodes' velocities.
   void resolve(const Step &step, Vec<dim> *v);
-  /// Lets nodes that pressed, hung together or stuck in the last `resolve` go on together, in velocities by which places
-  /// move.
+  /// Lets nodes that pressed, hung together or stuck in the last `resolve` go on together, in velocities by which
+  /// places move.
   void follow(Vec<dim> *w) const;
   /// Gives nodes of groups that are bonded their common velocity.
   void join_bonded(Vec<dim> *v) const;
@@ -60,7 +60,7 @@ class SoilContact {
   struct Report {
     Vec<dim> impulse{};   ///< on the second group [N s]
     double friction = 0;  ///< sum of friction over sum of normal impulses
-    double sliding = 0;   ///< mean velocity of the second group along the first one, weighted with normal impulses [m/s]
+    double sliding = 0;  ///< mean velocity of the second group along the first one, weighted with normal impulses [m/s]
   };
   /// Collective.
   PetscErrorCode take_reports(std::vector<Report> &reports);
@@ -70,20 +70,20 @@ class SoilContact {
  private:
   using Held = std::array<PrescribedDirections<dim>, 2>;
   struct Contact {
-    int base, source;           // node of the first sheet, and number of the source
-    std::array<int, 2> node;    // compact, of both groups: the one with the lower sheet first
+    int base, source;               // node of the first sheet, and number of the source
+    std::array<int, 2> node;        // compact, of both groups: the one with the lower sheet first
     std::array<double, 2> inverse;  // of their masses [1/kg]
-    Vec<dim> normal;            // from the first node's group to the other
-    double gap;                 // at the last search [m]
-    double area;                // of the surface at the node [m2]
+    Vec<dim> normal;                // from the first node's group to the other
+    double gap;                     // at the last search [m]
+    double area;                    // of the surface at the node [m2]
     FrictionMemory memory;
     // Of the last `resolve`:
-    Held held;                  // in which supports and bases hold the nodes
-    bool presses, hangs;        // the groups touch, under pressure or tension
-    bool joined, sticks;        // they move alike along the normal, and across it
-    double force;               // friction against sliding [N]
-    double closing;             // normal velocity at which the gap closes in the step [m/s]
-    Vec<dim> impulse;           // on the second node's group [N s]
+    Held held;            // in which supports and bases hold the nodes
+    bool presses, hangs;  // the groups touch, under pressure or tension
+    bool joined, sticks;  // they move alike along the normal, and across it
+    double force;         // friction against sliding [N]
+    double closing;       // normal velocity at which the gap closes in the step [m/s]
+    Vec<dim> impulse;     // on the second node's group [N s]
   };
   /// How a pair of nodes gives way to impulses.
   struct Yield {
@@ -111,14 +111,14 @@ class SoilContact {
   const BackgroundMesh<dim> &mesh_;
   const std::vector<ContactSource> &sources_;
   std::vector<std::array<int, 2>> pairs_;
-  std::vector<int> source_of_;            ///< [sheet][sheet]
-  std::vector<int> first_cell_, cell_;    ///< cells of the first sheet around its nodes
-  std::vector<int> contact_at_;           ///< [node of the first sheet] contact plus one, 0: none
+  std::vector<int> source_of_;          ///< [sheet][sheet]
+  std::vector<int> first_cell_, cell_;  ///< cells of the first sheet around its nodes
+  std::vector<int> contact_at_;         ///< [node of the first sheet] contact plus one, 0: none
   std::vector<Contact> contacts_, before_;
-  std::vector<Vec<dim>> area_;            ///< [contact] of the surface, from the first group to the other [m2]
+  std::vector<Vec<dim>> area_;  ///< [contact] of the surface, from the first group to the other [m2]
   std::vector<double> nodal_;
-  std::vector<Sums> sums_;                ///< [source] since the last report, of this rank
-  std::vector<int> crowded_;              ///< mesh nodes
+  std::vector<Sums> sums_;    ///< [source] since the last report, of this rank
+  std::vector<int> crowded_;  ///< mesh nodes
   bool searched_ = false;
   double resolved_step_ = 0;
 };

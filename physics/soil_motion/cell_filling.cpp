@@ -48,8 +48,7 @@ void CellFilling<dim>::find(const FilledGrid<dim> &grid, Integration integration
   }
   find_divided(grid);
   divide_cells(accepted);
-  for (const DividedCell &one : divided)
-    share[one.cell] = accepted.weight[one.cell] / grid.shape[one.cell].volume;
+  for (const DividedCell &one : divided) share[one.cell] = accepted.weight[one.cell] / grid.shape[one.cell].volume;
 }
 
 template <int dim>
@@ -58,7 +57,9 @@ void CellFilling<dim>::find_divided(const FilledGrid<dim> &grid) {
   const BackgroundMesh<dim> &mesh = grid.mesh();
   const int cells = mesh.cells_in_sheet();
   if (mesh.sheet_count() == 1) return;
-  const auto volume_in = [&](int c) { return std::accumulate(grid.nodal_share[c].begin(), grid.nodal_share[c].end(), 0.); };
+  const auto volume_in = [&](int c) {
+    return std::accumulate(grid.nodal_share[c].begin(), grid.nodal_share[c].end(), 0.);
+  };
   for (int c = 0; c < grid.cell_count(); ++c) {
     double all = 0;
     int met = 0;

@@ -28,17 +28,16 @@ struct CellFilling {
   void divide_cells(SoilState<dim> &to) const {
     for (const DividedCell &one : divided) {
       const int c = one.cell;
-      to.weight[c] =
-          to.particle_volume[c] + blend[c] * (one.part * to.shape[c].volume - to.particle_volume[c]);
+      to.weight[c] = to.particle_volume[c] + blend[c] * (one.part * to.shape[c].volume - to.particle_volume[c]);
     }
   }
   /// Finds these cells; `find` has done so.
   void find_divided(const FilledGrid<dim> &grid);
   void serialize(Archive &archive, const Archive::Rows &cells);
 
-  std::vector<double> blend;                     ///< b of docs/theory (4.4)
-  std::vector<double> share;                     ///< integration volume over cell volume
-  std::vector<double> slenderness;               ///< sum of squared shape-function gradients [1/m2]
+  std::vector<double> blend;        ///< b of docs/theory (4.4)
+  std::vector<double> share;        ///< integration volume over cell volume
+  std::vector<double> slenderness;  ///< sum of squared shape-function gradients [1/m2]
   struct DividedCell {
     int cell;
     double part;  ///< of the volume of all particles in the cell

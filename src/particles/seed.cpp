@@ -151,8 +151,8 @@ void seed(Body<dim> &body, const BackgroundMesh<dim> &mesh, int id_stride,
         for (int d = 0; d < dim; ++d) x[d] += points[k][a] * mesh.position[mesh.cells[cell].node[a]][d];
       p.reference[i] = p.position[i] = x;
       p.cell[i] = cell;
-      p.id[i] = static_cast<PetscInt>(mesh.global_cell[cell % mesh.cells_in_sheet()] * id_stride +
-                                      static_cast<long long>(k));
+      p.id[i] =
+          static_cast<PetscInt>(mesh.global_cell[cell % mesh.cells_in_sheet()] * id_stride + static_cast<long long>(k));
       p.volume[i] = mesh.volume[cell] / static_cast<double>(points.size());
       p.mass[i] = density(x) * p.volume[i];
       for (int d = 0; d < dim; ++d) p.velocity[i][d] = source.velocity.empty() ? 0 : value<dim>(source.velocity[d], x);

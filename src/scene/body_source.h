@@ -60,9 +60,10 @@ struct BodySource {
   void fields(Visitor &&v) {
     v.texts("region", region,
             "name (or list of names) of the physical groups of cells that the body fills at the start");
-    v.text("contact_group", contact_group,
-           "group to which the body belongs: groups part and slide where they meet, as [contact.NAME] says, and bodies of "
-           "one group stick; default: one group, \"default\"");
+    v.text(
+        "contact_group", contact_group,
+        "group to which the body belongs: groups part and slide where they meet, as [contact.NAME] says, and bodies of "
+        "one group stick; default: one group, \"default\"");
     v.number("density", density, kilogram_per_cubic_metre, Range{1e-3, 1e5, {800, 3500}},
              "total density, above and below the water table; or give unit_weight, or porosity and grain_density");
     v.number("unit_weight", unit_weight, newton_per_cubic_metre, weight_of_soil,

@@ -13,6 +13,7 @@
 #include "scene/scene.h"
 #include "scene/stage.h"
 #include "scene/structure_source.h"
+#include "scene/structure_source.h"
 #include "scene/words.h"
 #include "simulation/dynamics.h"
 
@@ -56,6 +57,7 @@ void check_name(const Scene &scene, const std::string &path, const std::string &
   };
   const char *other = is_taken(scene.boundary)        ? "boundary."
                       : is_taken(scene.rigid)         ? "rigid."
+                      : is_taken(scene.structure)     ? "structure."
                       : is_taken(scene.output->point) ? "output.point."
                                                       : nullptr;
   if (other)
@@ -82,6 +84,8 @@ void check_scope(const Scene &scene, bool host) {
       scene.complain("boundary." + source.name + ".kind",
                      "cannot be \"tied\" or \"free_field\"" + beside + ": the ground at these sides is of one group");
   }
+  for (const StructureSource &source : scene.structure)
+    scene.complain("structure." + source.name, "cannot act" + beside + ": it is tied to the soil of one group");
   for (const RigidSource &source : scene.rigid)
     scene.complain("rigid." + source.name, "cannot act" + beside + ": a node meets one of them, a body or a group");
   for (const StructureSource &source : scene.structure)
@@ -110,10 +114,10 @@ void check_contacts(const Scene &scene, bool host) {
   for (int a = 0; a < static_cast<int>(groups.name.size()); ++a)
     for (int b = a + 1; b < static_cast<int>(groups.name.size()); ++b)
       if (!met.count({a, b}))
-        scene.complain("body." + scene.body[std::ranges::find(groups.of_body, b) - groups.of_body.begin()].name +
-                           ".contact_group",
-                       "makes two groups without friction between them: add a [contact.NAME] with between = [\"" +
-                           groups.name[a] + "\", \"" + groups.name[b] + "\"] and a friction_angle");
+        scene.complain(
+            "body." + scene.body[std::ranges::find(groups.of_body, b) - groups.of_body.begin()].name + ".contact_group",
+            "makes two groups without friction between them: add a [contact.NAME] with between = [\"" + groups.name[a] +
+                "\", \"" + groups.name[b] + "\"] and a friction_angle");
   check_scope(scene, host);
 }
 

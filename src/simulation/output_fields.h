@@ -356,8 +356,7 @@ struct RunRow {
       of_structure("bond_slip", "m", s.report.slip), of_structure("slipping", "-", s.report.slipping);
       of_structure("utilisation", "-", s.report.utilisation);
     }
-    for (std::size_t k = 0; k < rigid.size(); ++k)
-      joules("work_" + rigid[k].name, behind_boundaries(k));
+    for (std::size_t k = 0; k < rigid.size(); ++k) joules("work_" + rigid[k].name, behind_boundaries(k));
     for (std::size_t s = 0; s < boundaries.size(); ++s)
       if (!boundaries[s].of_water)
         joules("work_" + boundaries[s].name, s < energy.of_boundary.size() ? energy.of_boundary[s] : 0);

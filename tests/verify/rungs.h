@@ -7,6 +7,7 @@
 #include "tests/verification/cam_clay_paths/exact.h"
 #include "tests/verification/celia/exact.h"
 #include "tests/verification/closed_box/exact.h"
+#include "tests/verification/contact/exact.h"
 #include "tests/verification/curved_chute/exact.h"
 #include "tests/verification/damped_layer/exact.h"
 #include "tests/verification/dynamic_oedometer/exact.h"
@@ -110,6 +111,7 @@ inline constexpr LadderEntry ladder[] = {
      rungs::cam_clay_paths},
     {"rigid_rotation", "verification", "stress of a body that rotates ten times", rungs::rigid_rotation},
     {"spinning_block", "verification", "momentum of a block that spins freely", rungs::spinning_block},
+    {"contact", "verification", "groups of bodies in contact: a block on a slope, bars that collide", rungs::contact},
     {"rigid_bodies", "verification",
      "rigid bodies on soil: fall, rest, sliding, toppling, earth pressure, bearing capacity", rungs::rigid_bodies},
     {"footing", "verification", "bearing capacity of Tresca soil, where cells could lock", rungs::footing},

@@ -64,7 +64,9 @@ class Contact : public ::testing::Test {
     return sum;
   }
 
-  std::string head(const std::string &more = "") const { return more + "[mesh]\nfile = \"" + file("mesh.msh") + "\"\n"; }
+  std::string head(const std::string &more = "") const {
+    return more + "[mesh]\nfile = \"" + file("mesh.msh") + "\"\n";
+  }
 
  private:
   TemporaryFolder folder_;
@@ -74,7 +76,8 @@ class Contact : public ::testing::Test {
 
 std::string body(const std::string &name, const std::string &group, const std::string &more = "",
                  const std::string &modulus = "1e6", double nu = 0) {
-  return "[body." + name + "]\nregion = \"" + name + "\"\n" + (group.empty() ? "" : "contact_group = \"" + group + "\"\n") +
+  return "[body." + name + "]\nregion = \"" + name + "\"\n" +
+         (group.empty() ? "" : "contact_group = \"" + group + "\"\n") +
          "density = 1000\nlaw = \"linear_elastic\"\nyoung_modulus = " + modulus +
          "\npoisson_ratio = " + std::to_string(nu) + "\n" + more;
 }
@@ -87,7 +90,8 @@ const std::string output = "[output]\ninterval = 0\nhistory_interval = 0.001\n";
 /// Two bars of 1 m x 0.4 m, 5 cm apart and at an angle to the cells, whose surfaces are those of cells.
 struct Bars {
   double c, s;
-  explicit Bars(double degrees) : c(std::cos(degrees * std::acos(-1.) / 180)), s(std::sin(degrees * std::acos(-1.) / 180)) {}
+  explicit Bars(double degrees)
+      : c(std::cos(degrees * std::acos(-1.) / 180)), s(std::sin(degrees * std::acos(-1.) / 180)) {}
   std::vector<test::Region> regions() const {
     const auto bar = [*this](double from, double to) {
       return [=, *this](const Place &x) {
@@ -109,8 +113,7 @@ TEST_F(Contact, bars_bounce_without_losing_momentum) {
     mesh(2, Place{-1.525, -1}, Place{1.525, 1}, 0.05, degrees == 0 ? 0 : 0.2, bars.regions());
     const Result result = run(head() + body("a", "a", bars.moving(0.5)) + body("b", "b", bars.moving(-0.5)) +
                               joint("friction_angle = 20") + stage(0.2) + output);
-    for (int d = 0; d < 2; ++d)
-      EXPECT_NEAR(result.momentum[d], result.momentum_before[d], 1e-12 * of_one) << degrees;
+    for (int d = 0; d < 2; ++d) EXPECT_NEAR(result.momentum[d], result.momentum_before[d], 1e-12 * of_one) << degrees;
     const auto time = result.history.column("time_s"), x = result.history.column("joint_force_x_N"),
                y = result.history.column("joint_force_y_N");
     const double noticed = 0.1 * 2 * of_one / wave;
@@ -140,7 +143,8 @@ std::vector<test::Region> block_on_ground() {
 }
 std::string on_slope(double degrees) {
   const double slope = degrees * std::acos(-1.) / 180;
-  return "gravity = [" + std::to_string(9.81 * std::sin(slope)) + ", " + std::to_string(-9.81 * std::cos(slope)) + "]\n";
+  return "gravity = [" + std::to_string(9.81 * std::sin(slope)) + ", " + std::to_string(-9.81 * std::cos(slope)) +
+         "]\n";
 }
 const std::string base = "[boundary.base]\nkind = \"fixed\"\n";
 const std::string follow = "[output.point.middle]\nposition = [0.8, 0.2]\n";
@@ -168,8 +172,9 @@ TEST_F(Contact, a_block_slides_with_its_friction_and_sticks_below_it) {
 
 /// Bars that touch are drawn apart: they hang together up to the strength, and part beyond it.
 TEST_F(Contact, tension_is_cut_off) {
-  const auto halves = std::vector<test::Region>{{"a", [](const Place &x) { return x[0] < 0 && std::abs(x[1]) < 0.2; }},
-                                                {"b", [](const Place &x) { return x[0] > 0 && x[0] < 0.8 && std::abs(x[1]) < 0.2; }}};
+  const auto halves =
+      std::vector<test::Region>{{"a", [](const Place &x) { return x[0] < 0 && std::abs(x[1]) < 0.2; }},
+                                {"b", [](const Place &x) { return x[0] > 0 && x[0] < 0.8 && std::abs(x[1]) < 0.2; }}};
   mesh(2, Place{-0.6, -0.4}, Place{1.8, 0.4}, 0.1, 0., halves);
   const auto pulled = [&](const std::string &strength) {
     return run(head() + body("a", "a") + body("b", "b", "body_acceleration = [\"20 * min(1, t / 0.2)\", \"0\"]\n") +
@@ -186,8 +191,8 @@ TEST_F(Contact, tension_is_cut_off) {
 TEST_F(Contact, bonded_groups_are_one_body) {
   mesh(2, Place{0, -0.4}, Place{1.6, 0.6}, 0.1, 0., block_on_ground());
   const auto shaken = [&](const std::string &group_b, const std::string &contact) {
-    return run(head(on_slope(10)) + body("a", "a", "", "5e6", 0.3) + body("b", group_b, "", "5e6", 0.3) + base + contact +
-               stage(0.2) + output + follow);
+    return run(head(on_slope(10)) + body("a", "a", "", "5e6", 0.3) + body("b", group_b, "", "5e6", 0.3) + base +
+               contact + stage(0.2) + output + follow);
   };
   const Result one = shaken("a", ""), two = shaken("b", joint("bonded = true"));
   for (const std::string column : {"kinetic_J", "strain_J", "middle_velocity_m_s", "middle_displacement_y_m"}) {
@@ -267,14 +272,13 @@ TEST_F(Contact, a_block_slides_down_the_slope_in_3d) {
        {{"a", [](const Place &x) { return x[2] < 0; }},
         {"b", [](const Place &x) { return 0.2 < x[0] && x[0] < 0.8 && 0.2 < x[1] && x[1] < 0.8 && x[2] < 0.4; }}});
   const double slope = std::acos(-1.) / 6, azimuth = 25 * std::acos(-1.) / 180, down = 9.81 * std::sin(slope);
-  const std::string gravity = "dimension = 3\nup = \"z\"\ngravity = [" + std::to_string(down * std::cos(azimuth)) + ", " +
-                              std::to_string(down * std::sin(azimuth)) + ", " +
+  const std::string gravity = "dimension = 3\nup = \"z\"\ngravity = [" + std::to_string(down * std::cos(azimuth)) +
+                              ", " + std::to_string(down * std::sin(azimuth)) + ", " +
                               std::to_string(-9.81 * std::cos(slope)) + "]\n";
-  const Result slides =
-      run(head(gravity) + body("a", "a", "", "5e6", 0.3) + body("b", "b", "", "5e6", 0.3) + base +
-          joint("friction_angle = [[0, 60], [0.15, 60], [0.15001, 20]]") +
-          stage(0.15, "gravity_ramp = 0.1\ndamping = 0.7\n") + stage(0.2) + output +
-          "[output.point.middle]\nposition = [0.5, 0.5, 0.2]\n");
+  const Result slides = run(head(gravity) + body("a", "a", "", "5e6", 0.3) + body("b", "b", "", "5e6", 0.3) + base +
+                            joint("friction_angle = [[0, 60], [0.15, 60], [0.15001, 20]]") +
+                            stage(0.15, "gravity_ramp = 0.1\ndamping = 0.7\n") + stage(0.2) + output +
+                            "[output.point.middle]\nposition = [0.5, 0.5, 0.2]\n");
   const auto x = slides.history.column("middle_displacement_x_m"), y = slides.history.column("middle_displacement_y_m"),
              v = slides.history.column("middle_velocity_m_s"), t = slides.history.column("time_s");
   const size_t from = std::ranges::lower_bound(t, 0.2) - t.begin();
