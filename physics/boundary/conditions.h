@@ -22,7 +22,8 @@ namespace talus {
 template <int dim>
 class RigidBodies;  // physics/boundary/rigid_bodies.h
 template <int dim>
-class SoilContact;         // physics/boundary/soil_contact.h
+class SoilContact;  // physics/boundary/soil_contact.h
+template <int dim>
 class StructuresInMotion;  // physics/structures/structures_in_motion.h
 
 template <int dim>
