@@ -20,7 +20,7 @@ TYPED_TEST(StrengthReduction, is_there_or_says_why_not) {
     constexpr bool reducible = requires(TypeParam l) { l.reduce_strength(2.); };
     EXPECT_EQ(reason.empty(), reducible);
     constexpr bool frictional = std::is_base_of_v<FrictionalStrength, TypeParam>;
-    EXPECT_EQ(reducible, frictional || std::is_same_v<TypeParam, HoekBrown>);
+    EXPECT_EQ(reducible, (frictional || std::is_same_v<TypeParam, HoekBrown>));
     constexpr bool elastic = std::is_same_v<TypeParam, LinearElastic> || std::is_same_v<TypeParam, HenckyElastic>;
     EXPECT_EQ(never_fails(law), elastic);
   }
