@@ -145,7 +145,7 @@ typename Bar<dim>::Report Bar<dim>::report() const {
     const BondPoint &p = chain.point[i];
     if (std::abs(p.slip) > std::abs(report.slip)) report.slip = p.slip;
     all += bonded(i);
-    if (p.limit > 0 && std::abs(p.force) >= nearly * p.limit / chain.divisor) report.slipping += bonded(i);
+    if (std::abs(p.force) >= nearly * p.limit / chain.divisor) report.slipping += bonded(i);
   }
   if (all > 0) report.slipping /= all;
   return report;

@@ -65,11 +65,11 @@ TEST(BarsInMotion, a_nail_holds_its_pull_out_force) {
   const std::vector<double> time = solved.history.column("time_s"),
                             force = solved.history.column("anchor_head_force_N"),
                             slip = solved.history.column("anchor_bond_slip_m"),
-                            speed = solved.history.column("block_velocity_x_m_s");
+                            speed = solved.history.column("block_velocity_m_s");
   double impulse = 0, speed_before = 0;
   for (size_t k = 1; k < time.size(); ++k) {
     if (time[k] < 0.4) continue;
-    EXPECT_NEAR(force[k] / (4000 * (0.6 + slip[k])), 1, 5e-3) << time[k];  // the bar is elastic
+    EXPECT_NEAR(force[k], 4000 * (0.6 + slip[k]), 0.002 * 2400) << time[k];  // slip of one step, and of an elastic bar
     if (impulse == 0) speed_before = speed[k - 1];
     impulse += (4000 - (force[k] + force[k - 1]) / 2) * (time[k] - time[k - 1]);
   }
@@ -80,7 +80,7 @@ TEST(BarsInMotion, a_nail_holds_its_pull_out_force) {
 TEST(BarsInMotion, an_anchor_that_bears_more_than_the_load_holds_the_block) {
   const Solved solved = solve(blocks("bond_strength = 40000\n"), {"stage.slide.damping=0.5", "stage.slide.duration=3"});
   EXPECT_NEAR(solved.history.column("anchor_head_force_N").back() / 4000, 1, 0.01);
-  EXPECT_LT(std::abs(solved.history.column("block_velocity_x_m_s").back()), 1e-3);
+  EXPECT_LT(std::abs(solved.history.column("block_velocity_m_s").back()), 1e-3);
 }
 
 TEST(BarsInMotion, what_tore_bears_nothing) {
@@ -89,14 +89,14 @@ TEST(BarsInMotion, what_tore_bears_nothing) {
   const std::vector<double> force = solved.history.column("anchor_head_force_N");
   EXPECT_NEAR(*std::max_element(force.begin(), force.end()), 1500, 1e-6);
   EXPECT_EQ(force.back(), 0);
-  EXPECT_NEAR(slope(solved.history, "block_velocity_x_m_s", 0.7, 1) / 2, 1, 0.01);
+  EXPECT_NEAR(slope(solved.history, "block_velocity_m_s", 0.7, 1) / 2, 1, 0.01);
 }
 
 TEST(BarsInMotion, all_ranks_give_the_same) {
   const std::string text = blocks("diameter = 0.1\nbond_adhesion = 3e3\nbond_friction_angle = 20\n");
   const std::vector<std::string> set{"stage.slide.duration=0.2"};
   const Solved together = solve(text, set), alone = solve(text, set, PETSC_COMM_SELF);
-  for (const char *column : {"anchor_axial_force_N", "anchor_bond_slip_m", "block_velocity_x_m_s"}) {
+  for (const char *column : {"anchor_axial_force_N", "anchor_bond_slip_m", "block_velocity_m_s"}) {
     const double one = alone.history.column(column).back();
     EXPECT_NEAR(together.history.column(column).back(), one, 1e-7 * std::abs(one)) << column;
     EXPECT_NE(one, 0) << column;
@@ -129,7 +129,7 @@ TEST(BarsInMotion, resumed_runs_keep_what_slipped) {
   const HistoryTable whole = history(half + more, none);
   options.resume = true;
   const HistoryTable resumed = history(half + more, options);
-  for (const char *column : {"anchor_axial_force_N", "anchor_bond_slip_m", "block_velocity_x_m_s"})
+  for (const char *column : {"anchor_axial_force_N", "anchor_bond_slip_m", "block_velocity_m_s"})
     EXPECT_EQ(resumed.column(column).back(), whole.column(column).back()) << column;
 }
 
