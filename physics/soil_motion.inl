@@ -47,7 +47,7 @@ SoilMotion<dim, Phases>::SoilMotion(const MotionParts<dim> &parts)
       fastest_mode_(parts.mesh, smallest_mass_, pores_of_bodies(parts)),
       rayleigh_(parts.mesh, parts.bodies),
       fluid_(parts.mesh, parts.bodies, parts.scene, parts.implicit_pressure),
-      implicit_(parts.implicit_pressure, parts.mesh) {
+      implicit_(parts.implicit_pressure, Phases::suction, transfer_.locking == Locking::patches, parts.mesh) {
   const int nodes = parts.mesh.node_count();
   make_room(force_, nodes), make_room(scratch_, static_cast<size_t>(nodes) * fields);
   make_room(nodal_, static_cast<size_t>(nodes) * nodal_sums);

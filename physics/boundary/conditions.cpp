@@ -253,6 +253,12 @@ void Conditions<dim>::project(const Vec<dim> *v, Vec<dim> *force) {
 }
 
 template <int dim>
+void Conditions<dim>::foresee(double t, double gamma, const FilledGrid<dim> &grid, Vec<dim> *v, const Pores &pores) {
+  for (const Dashpot &d : active_dashpots_) damp(d, gamma, pores.mass(grid, d.node), v[d.node]);
+  constrain(t, grid, v, true);
+}
+
+template <int dim>
 PetscErrorCode Conditions<dim>::resolve(double t, double gamma, const FilledGrid<dim> &grid, Vec<dim> *v,
                                         const Pores &pores) {
   PetscFunctionBeginUser;
@@ -269,17 +275,16 @@ PetscErrorCode Conditions<dim>::resolve(double t, double gamma, const FilledGrid
   };
   impulses_.clear(), resolved_step_ = gamma;
   if (contact_) contact_->resolve({t, gamma, grid, prescribed_, bases_}, v);
-  const auto damp = [&](const Dashpot &d) {
+  const auto damp_and_account = [&](const Dashpot &d) {
     const Vec<dim> before = v[d.node];
-    const Square<dim> mass = pores.mass(grid, d.node), system = mass + gamma * d.matrix;
-    map<dim>(v[d.node]) = system.inverse() * (mass * map<dim>(before) + gamma * d.matrix * map<dim>(d.beyond));
+    damp(d, gamma, pores.mass(grid, d.node), v[d.node]);
     account(d.node, d.source, difference(v[d.node], before));
   };
   const auto beside_columns =
       active_dashpots_.begin() + (columns_.empty() ? active_dashpots_.size() : first_dashpot_[0]);
-  std::for_each(active_dashpots_.begin(), beside_columns, damp);
+  std::for_each(active_dashpots_.begin(), beside_columns, damp_and_account);
   see_columns(v);  // which dashpots below them have slowed
-  std::for_each(beside_columns, active_dashpots_.end(), damp);
+  std::for_each(beside_columns, active_dashpots_.end(), damp_and_account);
   bases_.resolve(t, gamma, grid, prescribed_, pores, v);
   for (const auto &c : bases_.active()) account(c.node, c.contact->source, c.change);
   for (const ActivePrescribed &p : prescribed_.active())

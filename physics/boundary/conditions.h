@@ -95,6 +95,17 @@ class Conditions {
   /// implicitly over a step gamma, and sums up the reactions. Collective.
   PetscErrorCode resolve(double t, double gamma, const FilledGrid<dim> &grid, Vec<dim> *v, const Pores &pores = {});
 
+  /// What `resolve` would do to velocities that are not final, with dashpots and supports: nothing is summed up.
+  void foresee(double t, double gamma, const FilledGrid<dim> &grid, Vec<dim> *v, const Pores &pores);
+  /// Calls use(node, R) for nodes with dashpots, of whose velocity a step gamma leaves R v.
+  template <class Use>
+  void each_damped(double gamma, const FilledGrid<dim> &grid, const Pores &pores, Use &&use) const {
+    for (const Dashpot &d : active_dashpots_) {
+      const Square<dim> mass = pores.mass(grid, d.node), system = mass + gamma * d.matrix;
+      use(d.node, Square<dim>(system.inverse() * mass));
+    }
+  }
+
   /// Adds the work of the boundaries in an accepted step with nodal displacements `u`, and what bases remember of it;
   /// rigid bodies and structures move. Collective.
   void add_work(const FilledGrid<dim> &grid, const Vec<dim> *u);
@@ -131,6 +142,10 @@ class Conditions {
     Square<dim> matrix;  // [kg/s]
     Vec<dim> beyond;     // velocity of its other end [m/s]
   };
+  void damp(const Dashpot &d, double gamma, const Square<dim> &mass, Vec<dim> &v) const {
+    const Square<dim> system = mass + gamma * d.matrix;
+    map<dim>(v) = system.inverse() * (mass * map<dim>(v) + gamma * d.matrix * map<dim>(d.beyond));
+  }
   void see_columns(const Vec<dim> *v);
   struct Reaction {
     int node, source;

@@ -13,9 +13,9 @@ namespace talus {
 
 class ConjugateGradients {
  public:
-  explicit ConjugateGradients(size_t most_nodes) {
+  void make_room_for(size_t most_points) {
     for (std::vector<double> *field : {&residual_, &preconditioned_, &direction_, &image_})
-      make_room(*field, most_nodes);
+      make_room(*field, most_points);
   }
 
   /// Solves A x = b on `nodes` nodes, from x = 0. `diagonal` approximates that of A; `apply`(x, y) finds y = A x;
@@ -42,7 +42,7 @@ class ConjugateGradients {
     }
     PetscFunctionReturn(0);
   }
-  int iterations() const { return iterations_; }               ///< of the last solve
+  int products() const { return iterations_; }                 ///< with A, of the last solve
   const double *residual() const { return residual_.data(); }  ///< b - A x after it
 
  private:

@@ -122,7 +122,11 @@ class PoreFluid {
   // Pressure implicit in time, theory of pores, section 8; `frame` is the accepted state.
   PetscErrorCode start_implicit(const Frame &frame, const PoreConditions<dim> &conditions, double step,
                                 ImplicitPressure<dim> &of);
-  PetscErrorCode push_by_change(const Frame &frame, double step, ImplicitPressure<dim> &of, Vec<dim> *velocity) const;
+  void find_walls(const Frame &frame, const PoreConditions<dim> &conditions, double step, const Vec<dim> *solid,
+                  const Vec<dim> *fluid, ImplicitPressure<dim> &of) const;
+  /// Part of the velocity that a fluid retains beside the skeleton in a step, once drag has acted.
+  double free_share(double step, int node) const { return 1 / (1 + drag_number(step, over_step(node, 0))); }
+  PetscErrorCode push_by_change(const StepStart<dim> &at, ImplicitPressure<dim> &of, Vec<dim> *velocity) const;
 
   /// Suction at the points of a body [Pa].
   const double *suction(int body) const requires Phases::suction { return points_[body].suction.data(); }
@@ -216,9 +220,10 @@ class PoreFluid {
   template <class Hold>
   void limits(const Frame &frame, const PoreConditions<dim> &conditions, Hold &&hold) const;
   void find_gaps(const Frame &frame, const PoreConditions<dim> &conditions);
+  void start_drying(const Frame &frame, ImplicitPressure<dim> &of) requires Phases::suction;
   void find_mobility(const Frame &frame, const PoreConditions<dim> &conditions, double step,
                      ImplicitPressure<dim> &of) const;
-  PetscErrorCode spread_divergence(const Frame &frame, Array &divergence);
+  PetscErrorCode spread_divergence(const Frame &frame, Array &outflow);
   PetscErrorCode share_divergence(const Frame &frame, Array &divergence) requires Phases::suction;
   PetscErrorCode share_pressure(const Frame &frame, Array &pressure) requires Phases::suction;
   /// Integration volume of a cell minus the volume of its particles; 0 in nearly full cells [m3].

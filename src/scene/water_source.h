@@ -54,8 +54,8 @@ struct Water {
          {"implicit", PoreIntegration::at_end},
          {"auto", PoreIntegration::automatic}},
         "pore pressures that act in a step: those at its start, or those at its end, with which the step is that of "
-        "dry soil; implicit needs phases = \"saturated\" and integrator.kind = \"euler\"; auto is implicit where that "
-        "takes less time and the scene allows it");
+        "dry soil; implicit needs phases = \"saturated\" or \"unsaturated\" and integrator.kind = \"euler\"; auto is "
+        "implicit where that takes less time and the scene allows it");
     v.function("suction", suction, pascal, Range{0, 1e9, {0, 1e6}}, of::place,
                "initial suction above the water table, function of x, y, z; default: hydrostatic");
     v.water_table("table", table, metre,

@@ -12,11 +12,20 @@ namespace talus {
 std::optional<PoreRefusal> implicit_pressure_refused(const Scene &scene) {
   const PhaseTraits phases = phase_traits(scene.phases);
   DeferredTable table = scene.integrator;
-  const bool by_euler = std::holds_alternative<EulerSettings>(read_integrator(table, phases.liquid));
-  if (!(phases.liquid && !phases.suction && by_euler))
+  if (!phases.liquid)
     return PoreRefusal{"water.pressure",
-                       "can be \"implicit\" only with phases = \"saturated\" and integrator.kind = \"euler\": take "
-                       "these, or leave it out"};
+                       "can be \"implicit\" only where pore water moves: take phases = \"saturated\" or "
+                       "\"unsaturated\", or leave it out"};
+  if (phases.gas)
+    return PoreRefusal{"water.pressure",
+                       "must be \"explicit\" with phases = \"three-phase\", where waves in the gas bound the step too; "
+                       "leave it out, or take phases = \"unsaturated\", whose gas is at rest"};
+  if (!std::holds_alternative<EulerSettings>(read_integrator(table, phases.liquid)))
+    return PoreRefusal{"water.pressure",
+                       "can be \"implicit\" only with integrator.kind = \"euler\": an implicit pressure is of first "
+                       "order in time, whatever the integrator; take that, or leave it out"};
+  if (scene.water->storage == PoreStorage::rate)
+    return PoreRefusal{"water.storage", "must be \"mass\" with water.pressure = \"implicit\"; leave it out"};
   if (scene.water->drag == PoreDrag::at_start)
     return PoreRefusal{"water.drag", "must be \"implicit\" with water.pressure = \"implicit\"; leave it out"};
   if (!scene.transfer->average_stress)
@@ -26,23 +35,27 @@ std::optional<PoreRefusal> implicit_pressure_refused(const Scene &scene) {
   if (scene.transfer->pore_smoothing == PoreSmoothing::none)
     return PoreRefusal{"transfer.pore_smoothing",
                        "must be \"nodal\" with water.pressure = \"implicit\", which is one of nodes; leave it out"};
+  if (phases.suction && scene.transfer->locking == Locking::nodal)
+    return PoreRefusal{"transfer.locking",
+                       "must be \"patches\" or \"none\" with water.pressure = \"implicit\" and phases = "
+                       "\"unsaturated\"; leave it out"};
   return {};
 }
 
-/// Dashpots and friction act after the pressure is found: they would squeeze pores whose water no longer gives way in
-/// the step.
+/// Friction acts after the pressure is found: it would squeeze pores whose water no longer gives way in the step.
 std::optional<PoreRefusal> implicit_pressure_refused(const std::vector<NamedBoundary> &boundaries) {
   for (const NamedBoundary &source : boundaries)
-    if (source.kind.in_motion == OnSoil::dashpot || source.kind.in_motion == OnSoil::contact)
-      return PoreRefusal{"boundary." + source.name + ".kind",
-                         "acts on the velocities after pore pressures are found, which water.pressure = \"implicit\" "
-                         "does not allow: take fixed, roller or tied, or water.pressure = \"explicit\""};
+    if (source.kind.in_motion == OnSoil::contact)
+      return PoreRefusal{
+          "boundary." + source.name + ".kind",
+          "rubs on the soil after its pore pressures are found, which water.pressure = \"implicit\" does "
+          "not allow: take fixed, roller or tied, or water.pressure = \"explicit\""};
   return {};
 }
 
 PoreIntegrationChoice choose_pore_integration(const Scene &scene, const std::vector<NamedBoundary> &boundaries,
                                               double explicit_step, double implicit_step) {
-  const double cost = 3;  // of a step over that of an explicit one, `talus bench`
+  const double cost = phase_traits(scene.phases).suction ? 8 : 3;  // of a step over an explicit one, `talus bench`
   const std::string chosen[] = {"pore pressure is explicit in time (water.pressure = \"auto\"): ",
                                 "pore pressure is implicit in time (water.pressure = \"auto\"): "};
   auto refusal = implicit_pressure_refused(scene);

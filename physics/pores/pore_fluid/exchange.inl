@@ -150,6 +150,10 @@ PetscErrorCode PoreFluid<dim, Phases>::smooth_divergence(const Frame &frame, Arr
   PetscFunctionBeginUser;
   if (implicit_) {
     PetscCall(smooth<1>(frame, {volume_strain.data()}));
+    if constexpr (Phases::suction)
+      PetscCall(share_divergence(frame, divergence_[0]));
+    else
+      for (int c = 0; c < frame.grid.cell_count(); ++c) divergence_[0][c] *= frame.weight[c];
     PetscCall(spread_divergence(frame, divergence_[0]));
     PetscFunctionReturn(0);
   }
@@ -162,22 +166,24 @@ PetscErrorCode PoreFluid<dim, Phases>::smooth_divergence(const Frame &frame, Arr
   PetscFunctionReturn(0);
 }
 
-/// Where pressure is implicit in time, nodes give what comes to them in proportion to the volumes of the particles
-/// around them: so it strains the pores of all cells of a node alike, theory (8.4). Collective.
+/// Where pressure is implicit in time, nodes give what comes to them from full cells to these in proportion to the
+/// volumes of their particles: so it strains the pores of all full cells of a node alike, theory (8.4). Collective.
 template <int dim, class Phases>
-PetscErrorCode PoreFluid<dim, Phases>::spread_divergence(const Frame &frame, Array &divergence) {
+PetscErrorCode PoreFluid<dim, Phases>::spread_divergence(const Frame &frame, Array &outflow) {
   PetscFunctionBeginUser;
   const int nodes = frame.grid.node_count(), cells = frame.grid.cell_count();
   std::fill_n(nodal_.begin(), 2 * nodes, 0.);
-  for (int c = 0; c < cells; ++c)
-    for (int i : frame.shape[c].node)
-      nodal_[2 * i] += frame.particle_volume[c], nodal_[2 * i + 1] += frame.weight[c] * divergence[c];
-  PetscCall(frame.grid.sum(nodal_.data(), 2));
-  for (int i = 0; i < nodes; ++i) nodal_[2 * i + 1] /= nodal_[2 * i] * (dim + 1);
   for (int c = 0; c < cells; ++c) {
+    if (!smoothed(c)) continue;
+    for (int i : frame.shape[c].node) nodal_[2 * i] += frame.particle_volume[c], nodal_[2 * i + 1] += outflow[c];
+  }
+  PetscCall(frame.grid.sum(nodal_.data(), 2));
+  for (int i = 0; i < nodes; ++i) nodal_[2 * i + 1] /= std::max(nodal_[2 * i] * (dim + 1), 1e-300);
+  for (int c = 0; c < cells; ++c) {
+    if (!smoothed(c)) continue;
     double sum = 0;
     for (int i : frame.shape[c].node) sum += nodal_[2 * i + 1];
-    divergence[c] = frame.particle_volume[c] * sum;
+    outflow[c] = frame.particle_volume[c] * sum;
   }
   PetscFunctionReturn(0);
 }

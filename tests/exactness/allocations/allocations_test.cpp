@@ -165,11 +165,18 @@ TEST(Allocations, none_where_pore_fluids_move) {
 }
 
 TEST(Allocations, none_where_pore_pressure_is_implicit) {
-  const Count c = count(wet_column, {"mesh.size=0.01", "water.pressure=implicit"}, 1000, 400);
-  EXPECT_GT(c.steps, 10);
-  EXPECT_GT(c.remaps, 1);
-  EXPECT_EQ(c.in_steps, 0);
-  EXPECT_EQ(c.in_remaps, 0);
+  const std::vector<std::string> curves = {"body.sand.retention.curve=van_genuchten",
+                                           "body.sand.retention.reference_suction=500",
+                                           "body.sand.retention.shape=0.5"};
+  for (const std::string phases : {"saturated", "unsaturated"}) {
+    std::vector<std::string> overrides{"mesh.size=0.01", "phases=" + phases, "water.pressure=implicit"};
+    if (phases != "saturated") overrides.insert(overrides.end(), curves.begin(), curves.end());
+    const Count c = count(wet_column, overrides, 1000, 400);
+    EXPECT_GT(c.steps, 10) << phases;
+    EXPECT_GT(c.remaps, 1) << phases;
+    EXPECT_EQ(c.in_steps, 0) << phases;
+    EXPECT_EQ(c.in_remaps, 0) << phases;
+  }
 }
 
 TEST(Allocations, none_under_loads_that_move_with_a_face) {
