@@ -55,7 +55,8 @@ std::optional<PoreRefusal> implicit_pressure_refused(const std::vector<NamedBoun
 
 PoreIntegrationChoice choose_pore_integration(const Scene &scene, const std::vector<NamedBoundary> &boundaries,
                                               double explicit_step, double implicit_step) {
-  const double cost = phase_traits(scene.phases).suction ? 8 : 3;  // of a step over an explicit one, `talus bench`
+  // of a step over an explicit one: of `talus bench`; of moving soil that may dry, docs/gallery/implicit_pressure
+  const double cost = phase_traits(scene.phases).suction ? 30 : 3;
   const std::string chosen[] = {"pore pressure is explicit in time (water.pressure = \"auto\"): ",
                                 "pore pressure is implicit in time (water.pressure = \"auto\"): "};
   auto refusal = implicit_pressure_refused(scene);
