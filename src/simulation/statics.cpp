@@ -286,12 +286,22 @@ void Statics<dim>::serialize(Archive &archive) {
   std::string lost;
   for (const std::string &name : lost_stages) lost += name + '\n';
   archive.serialize("lost stages", lost);
+  const bool any_holds_water =
+      std::any_of(world_.laws.begin(), world_.laws.end(), [](const Law &law) { return law.holds_water(); });
+  std::string drains(world_.laws.size(), '-');  // bodies whose water may leave in the stage that has ended
+  for (size_t b = 0; problem_ && b < drains.size(); ++b) {
+    const Law &law = problem_->soil().points()[b].law;
+    if (law.holds_water() && law.pore_stiffness() == 0) drains[b] = '+';
+  }
+  if (any_holds_water) archive.serialize("soil that drains", drains);
   if (archive.reading()) {
     std::istringstream names(lost);
     lost_stages.clear();
     for (std::string name; std::getline(names, name);) lost_stages.push_back(name);
     if (begun) {
       make();
+      for (size_t b = 0; b < drains.size(); ++b)
+        if (drains[b] == '+') problem_->soil().points()[b].law = world_.laws[b].holding_water(0);
       require(activate());
     }
   }

@@ -356,8 +356,9 @@ const Chain chains[] = {
       stage("moves", "dynamic", "duration = 0.02\n"), stage("wettest", "seepage", "duration = 40\n"),
       stage("rests", "quasi_static", "duration = 1\n")}},
     {"of_consolidated_strength",
-     {"phases=drained", "body.sand.drainage=undrained", "body.sand.drained_in=stands",
-      "body.sand.shansep={stage='stands', ratio=0.3, minimum=2e3}"},
+     {"phases=drained", "boundary.well={group='left', kind='traction', pressure=0}", "body.sand.drainage=undrained",
+      "body.sand.drained_in=stands",
+      "body.sand.shansep={stage='stands', ratio=2, minimum=8e3}"},
      {stage("stands", "quasi_static", "duration = 1\ninitial_stress = \"k0\"\n"),
       stage("stands_still", "quasi_static", "duration = 1\n"), stage("moves", "dynamic", "duration = 0.01\n"),
       stage("rests", "quasi_static", "duration = 1\n")}},
@@ -390,10 +391,11 @@ TEST_P(ResumedBehindElements, IsTheSameToTheBit) {
     run("resumed", ended, false);
     run("resumed", chain.stages.size(), true);
     const Ending ending = Program(folder, {PYTHON, "-c", R"(
-import h5py, numpy
+import csv, h5py, numpy
 ends = [max(h5py.File(name + '/run.h5')['snapshots'].values(), key=lambda s: s.attrs['time']) for name in ('whole', 'resumed')]
 for field in ends[0]: assert numpy.array_equal(ends[0][field][...], ends[1][field][...], equal_nan=True), field
-assert open('whole/history.csv').read() == open('resumed/history.csv').read()
+rows = [list(csv.reader(open(name + '/history.csv'))) for name in ('whole', 'resumed')]
+assert rows[0] == rows[1], [(name, a, b) for rest in zip(*rows) for name, a, b in zip(rows[0][0], *rest) if a != b][:9]
 print('the same')
 )"})
                               .end();
@@ -433,6 +435,7 @@ ends = [max(h5py.File(name + '/run.h5')['snapshots'].values(), key=lambda s: s.a
 order = [numpy.argsort(end['id'][...], kind='stable') for end in ends]
 for field in ends[0]:
     a, b = (end[field][...][k] for end, k in zip(ends, order))
+    if numpy.isnan(a).all() and numpy.isnan(b).all(): continue
     apart = numpy.nanmax(numpy.abs(a - b) - 1e-14) / (numpy.nanmax(numpy.abs(a)) or 1)
     assert apart <= 1e-11, (field, apart)
 print('the same')
