@@ -45,10 +45,11 @@ struct Drainage {
   Shansep shansep;
   template <class Visitor>
   void fields(Visitor &&v) {
-    v.choice("drainage", kind, {{"drained", Kind::drained}, {"undrained", Kind::undrained}},
-             "undrained: pore water cannot leave, and an excess pore pressure grows with the loss of volume; with "
-             "effective c and phi (PLAXIS: Undrained A), or c_u as cohesion and friction_angle = 0 (Undrained B); needs "
-             "phases = \"drained\" or \"dry\"");
+    v.choice(
+        "drainage", kind, {{"drained", Kind::drained}, {"undrained", Kind::undrained}},
+        "undrained: pore water cannot leave, and an excess pore pressure grows with the loss of volume; with "
+        "effective c and phi (PLAXIS: Undrained A), or c_u as cohesion and friction_angle = 0 (Undrained B); needs "
+        "phases = \"drained\" or \"dry\"");
     v.number("undrained_poisson_ratio", undrained_poisson_ratio, one, Range{0.1, 0.4999},
              "undrained: Poisson's ratio nu_u of the soil with its water, which gives K_w / n; above poisson_ratio");
     v.number("skempton_b", skempton_b, one, Range{0, 0.9999},

@@ -45,9 +45,10 @@ struct FrictionalStrength {
              "friction angle at large strain; negative: the peak value");
     v.number("residual_dilation_angle", residual_dilation_angle, degree, Range{-1, 70, {0, 35}},
              "dilation angle at large strain; negative: the peak value");
-    v.number("residual_ratio", residual_ratio, one, Range{-1, 1},
-             "c and tan(phi) at large strain over those of the peak, also where the peak is a function of place; in place "
-             "of residual_cohesion and residual_friction_angle; negative: not given");
+    v.number(
+        "residual_ratio", residual_ratio, one, Range{-1, 1},
+        "c and tan(phi) at large strain over those of the peak, also where the peak is a function of place; in place "
+        "of residual_cohesion and residual_friction_angle; negative: not given");
     v.number("shape_factor", shape_factor, one, Range{0, 1e6, {0.1, 1e3, or_zero}},
              "eta: strength falls with exp(-eta plastic_strain)");
     v.number("reference_size", reference_size, metre, Range{0, 1e4, {1e-3, 50, or_zero}},

@@ -26,8 +26,12 @@ inline constexpr HistoryField field_of_dilation{
     true};
 /// Of soil whose pore water cannot leave, behind the internal variables of its law.
 inline constexpr HistoryField field_of_excess_pressure{
-    "excess_pore_pressure", pascal,
-    "pore pressure beyond that of [water], of soil with drainage = \"undrained\"", true, false, true};
+    "excess_pore_pressure",
+    pascal,
+    "pore pressure beyond that of [water], of soil with drainage = \"undrained\"",
+    true,
+    false,
+    true};
 /// History of laws that do not dilate: fluids and mu(I).
 inline constexpr std::array shear_history{field_of_plastic_strain};
 /// History of the frictional laws.

@@ -159,8 +159,8 @@ struct HoekBrownCase : HoekBrown {
   static constexpr bool by_place = divided;
 
   template <int dim>
-  [[gnu::always_inline]] bool admits(const Stress<dim> &trial, const History &,
-                                     const Surroundings &) const requires(!divided) {
+  [[gnu::always_inline]] bool admits(const Stress<dim> &trial, const History &, const Surroundings &) const
+      requires(!divided) {
     const Principal<> t = PrincipalAxes<dim>(trial).values();
     const double of_trial = s - t.s1 / scale, x = of_trial > least ? of_trial : least;
     const auto touched = tangent(x, 1.).strength(sin_psi, limit);
@@ -179,7 +179,8 @@ struct HoekBrownCase : HoekBrown {
     const double found = solve({value_of(trial.s1), value_of(trial.s2), value_of(trial.s3)}, share);
     Dual<1> at(found);
     at.slope[0] = 1;
-    const double slope = excess(Principal<>{value_of(trial.s1), value_of(trial.s2), value_of(trial.s3)}, at, share).slope[0];
+    const double slope =
+        excess(Principal<>{value_of(trial.s1), value_of(trial.s2), value_of(trial.s3)}, at, share).slope[0];
     const Value step = excess(trial, Value(found), share) * (slope < 0 ? 1 / slope : 0);
     const Value free = found - step, x = found > least ? free : Value(found);
     const auto m = tangent(x, share).strength(sin_psi, limit);

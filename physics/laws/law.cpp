@@ -90,13 +90,14 @@ std::pair<Law, Drainage> read(const DeferredTable &table) {
   if (drainage.shansep.given()) {
     const FrictionalStrength *strength = frictional_strength(law);
     if (!strength)
-      reader.refuse("law must have a cohesion and a friction_angle beside shansep, which takes their place: take "
-                    "mohr_coulomb or drucker_prager");
+      reader.refuse(
+          "law must have a cohesion and a friction_angle beside shansep, which takes their place: take "
+          "mohr_coulomb or drucker_prager");
     if (!(strength->cohesion > 0))  // a function of place is none yet
-      reader.refuse("cohesion must be a number above 0 beside shansep, whose strength is kept as a share of it; take "
-                    "\"0.1 kPa\" where the soil has none");
-    law = with_changed_strength(
-        law, [](FrictionalStrength &one) { one.reads_shares = one.consolidates = true; });
+      reader.refuse(
+          "cohesion must be a number above 0 beside shansep, whose strength is kept as a share of it; take "
+          "\"0.1 kPa\" where the soil has none");
+    law = with_changed_strength(law, [](FrictionalStrength &one) { one.reads_shares = one.consolidates = true; });
   }
   return {law, drainage};
 }

@@ -108,8 +108,8 @@ struct LawTrouble {
 /// The first thing that went wrong inside of a law since it was read, if it can go wrong.
 LawTrouble law_trouble(const Law &law);
 
-/// Elastic energy per volume [J/m3]. Of soil that holds its water, of the stress as stored: by the bulk modulus of both,
-/// which gives the energy of a change of stress whatever part of it the soil bore before.
+/// Elastic energy per volume [J/m3]. Of soil that holds its water, of the stress as stored: by the bulk modulus of
+/// both, which gives the energy of a change of stress whatever part of it the soil bore before.
 template <int dim>
 double elastic_energy(const Law &law, const Stress<dim> &stress);
 /// The same of a stress as stored, [stress_size] [Pa].

@@ -18,7 +18,8 @@ constexpr double almost_all = 0.95;  // of the fall from peak to residual streng
 }  // namespace
 
 PresentStrength::PresentStrength(const Law &law)
-    : law_(with_changed_strength(law, [](auto &one) { one.prepare(); })), known_(frictional_strength(law) || law.as<HoekBrown>()) {}
+    : law_(with_changed_strength(law, [](auto &one) { one.prepare(); })),
+      known_(frictional_strength(law) || law.as<HoekBrown>()) {}
 
 template <int dim>
 Mobilised PresentStrength::operator()(const Stress<dim> &stress, double plastic_strain,

@@ -1,6 +1,6 @@
 #pragma once
-/// The strength that a point of a frictional soil or of Hoek-Brown's rock has now, how much of it the stress takes, and what has become of it.
-/// For results, not for the particle loop: some tenths of a microsecond a point.
+/// The strength that a point of a frictional soil or of Hoek-Brown's rock has now, how much of it the stress takes, and
+/// what has become of it. For results, not for the particle loop: some tenths of a microsecond a point.
 #include "physics/laws/law.h"
 
 namespace talus {

@@ -41,8 +41,9 @@ class TrialStrength {
   /// Strength is divided by the factor of the trial only where `divided(place, element size)`; elsewhere it is the
   /// soil's own. Returns the share of the soil where it is divided. Collective.
   double confine(const std::function<bool(const Vec<dim> &, double)> &divided);
-  /// Lets soil above a line crack: bodies of which a part lies there bear no tension, and at a place with a crack no less
-  /// than `water`(place), the pressure of the water in it; negative where there is none. Undone by `restore`. Collective.
+  /// Lets soil above a line crack: bodies of which a part lies there bear no tension, and at a place with a crack no
+  /// less than `water`(place), the pressure of the water in it; negative where there is none. Undone by `restore`.
+  /// Collective.
   void crack(const std::function<double(const Vec<dim> &)> &water);
   /// Strength of these cells, and of the bases under them, is divided by `divisor` in all trials from now on.
   /// Collective.
@@ -56,14 +57,14 @@ class TrialStrength {
 
   struct OfBody {
     std::vector<FrictionalPoint> own;        ///< of points; none where the law has no such strength
-    std::vector<FrictionalPoint> undrained;  ///< likewise, without flow of the pore water: in `undrained` trials, and in
-                                             ///< all of soil that holds its water
-    std::vector<double> divisor;             ///< of points; 0: that of the trial
-    double psi = 0;                          ///< mean of its points, by volume [rad]
-    bool kept = false;                       ///< no trial divides its strength
-    bool cracks = false;                     ///< it bears no tension, and holds the water of its cracks
-    std::vector<double> history;             ///< without that water
-    Law law;                                 ///< with which the points came, and their shares
+    std::vector<FrictionalPoint> undrained;  ///< likewise, without flow of the pore water: in `undrained` trials, and
+                                             ///< in all of soil that holds its water
+    std::vector<double> divisor;  ///< of points; 0: that of the trial
+    double psi = 0;               ///< mean of its points, by volume [rad]
+    bool kept = false;            ///< no trial divides its strength
+    bool cracks = false;          ///< it bears no tension, and holds the water of its cracks
+    std::vector<double> history;  ///< without that water
+    Law law;                      ///< with which the points came, and their shares
     std::vector<double> cohesion_share, friction_share;
   };
   SoilElements<dim> &soil_;

@@ -5,8 +5,8 @@
 
 namespace talus {
 
-/// Strength of the Gauss points of a body of this law, as trials divide it: c = s_u and phi = 0, and the soil's own c and
-/// phi where `drains(point)`, with psi = phi. None where the law has no such strength.
+/// Strength of the Gauss points of a body of this law, as trials divide it: c = s_u and phi = 0, and the soil's own c
+/// and phi where `drains(point)`, with psi = phi. None where the law has no such strength.
 template <int dim>
 std::vector<FrictionalPoint> undrained_strength(const GaussPoints<dim> &points, const Law &law,
                                                 const std::function<bool(int)> &drains);

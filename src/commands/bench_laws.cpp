@@ -31,9 +31,8 @@ const std::vector<std::pair<std::string, std::string>> soils = {
     {"mohr_coulomb, suction", "law = \"mohr_coulomb\"\n" + frictional + wet},
     {"mohr_coulomb, softening", "law = \"mohr_coulomb\"\n" + frictional + softening},
     {"mohr_coulomb, softening, suction", "law = \"mohr_coulomb\"\n" + frictional + softening + wet},
-    {"hoek_brown",
-     "law = \"hoek_brown\"\n" + elastic +
-         "intact_strength = 3e7\ngeological_strength_index = 5\nintact_constant = 2\n"},
+    {"hoek_brown", "law = \"hoek_brown\"\n" + elastic +
+                       "intact_strength = 3e7\ngeological_strength_index = 5\nintact_constant = 2\n"},
     {"cam_clay",
      "law = \"cam_clay\"\ncompression_slope = 0.2\nswelling_slope = 0.04\ncritical_stress_ratio = 1\npoisson_ratio = "
      "0.3\n"

@@ -44,7 +44,8 @@ void check_strength(const World<dim> &world) {
   for (size_t b = 0; b < world.laws.size(); ++b) {
     const StrengthRange &range = world.strength[b];
     divided += is_divided(b);
-    if (is_divided(b) && frictional_strength(world.laws[b]) && range.cohesion[1] == 0 && range.friction_angle[1] == 0 && !reads_suction(world.laws[b]))
+    if (is_divided(b) && frictional_strength(world.laws[b]) && range.cohesion[1] == 0 && range.friction_angle[1] == 0 &&
+        !reads_suction(world.laws[b]))
       without.push_back(b);
   }
   if (!without.empty() && without.size() == divided)

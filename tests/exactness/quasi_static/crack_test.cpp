@@ -24,8 +24,7 @@ pressure = 10e3
 const Keys soil{"body.soil.law=mohr_coulomb", "body.soil.cohesion=14e3", "body.soil.friction_angle=0"};
 /// Water of 1 Pa per metre in cracks all over the block.
 Keys crack_with(double pressure) {
-  return {"factor_of_safety.tension_crack=[[0,-1],[1,-1]]",
-          "factor_of_safety.crack_water=" + std::to_string(pressure)};
+  return {"factor_of_safety.tension_crack=[[0,-1],[1,-1]]", "factor_of_safety.crack_water=" + std::to_string(pressure)};
 }
 
 struct Found {
@@ -65,9 +64,8 @@ TEST(TensionCrack, bears_no_tension) {
 
 /// Rock of Hoek and Brown too, and soil that holds its water.
 TEST(TensionCrack, opens_in_rock_and_in_undrained_soil) {
-  const Keys rock{"body.soil.law=hoek_brown", "body.soil.intact_strength=30e6",
-                  "body.soil.geological_strength_index=5", "body.soil.intact_constant=2",
-                  "body.soil.dilation_angle=90"};
+  const Keys rock{"body.soil.law=hoek_brown", "body.soil.intact_strength=30e6", "body.soil.geological_strength_index=5",
+                  "body.soil.intact_constant=2", "body.soil.dilation_angle=90"};
   const auto search_in = [](const Keys &law, const Keys &more) {
     Scene scene = parse_scene(pressed_block, meshes + "/scene.toml", law + more);
     scene.add_factor_stage();

@@ -123,7 +123,8 @@ TEST(HoekBrown, says_what_of_its_strength_a_stress_takes) {
   EXPECT_EQ(strength_of(rests, 0, {1}).state, StrengthState::elastic);
   EXPECT_NEAR(law.share_of_strength(yields, 0, {1}), 1, 1e-9);
   const auto line = law.line_at(-50e3);
-  EXPECT_NEAR((1 + std::sin(line.phi)) * 50e3 - (1 - std::sin(line.phi)) * sigma_1, -2 * line.c * std::cos(line.phi), 1e-6);
+  EXPECT_NEAR((1 + std::sin(line.phi)) * 50e3 - (1 - std::sin(line.phi)) * sigma_1, -2 * line.c * std::cos(line.phi),
+              1e-6);
   EXPECT_NEAR(law.radius_at((50e3 + sigma_1) / 2), (sigma_1 - 50e3) / 2, 1e-6);
 }
 

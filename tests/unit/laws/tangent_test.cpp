@@ -146,7 +146,7 @@ TEST(Tangent, is_symmetric_where_flow_is_associated) {
   MohrCoulomb cut = mohr_coulomb(10e3, 30, 30);
   cut.tension_cutoff = 2e3;
   for (const Law &law : {Law(cone), Law(cut), Law(mohr_coulomb(10e3, 30, 30)), Law(mohr_coulomb(10e3, 0, 0)),
-                        Law(examples<HoekBrown>()[1]), Law(examples<HoekBrown>()[4])}) {
+                         Law(examples<HoekBrown>()[1]), Law(examples<HoekBrown>()[4])}) {
     EXPECT_LT(worst_asymmetry<2>(law), 1e-12);
     EXPECT_LT(worst_asymmetry<3>(law), 1e-12);
   }
