@@ -145,7 +145,8 @@ typename Bar<dim>::Report Bar<dim>::report() const {
     const BondPoint &p = chain.point[i];
     if (std::abs(p.slip) > std::abs(report.slip)) report.slip = p.slip;
     all += bonded(i);
-    if (std::abs(p.force) >= nearly * p.limit / chain.divisor) report.slipping += bonded(i);
+    const bool bonds = p.limit > 0 || p.slip != 0;  // or did before it was drawn out
+    if (bonds && std::abs(p.force) >= nearly * p.limit / chain.divisor) report.slipping += bonded(i);
   }
   if (all > 0) report.slipping /= all;
   return report;

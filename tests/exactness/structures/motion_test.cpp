@@ -103,6 +103,45 @@ TEST(BarsInMotion, all_ranks_give_the_same) {
   }
 }
 
+/// Motion takes over what finite elements with the same shape functions have found: nothing swings.
+TEST(BarsInMotion, goes_on_from_finite_elements) {
+  const Solved solved = solve("gravity = 10\n" + box + R"(density = 2000
+[boundary.base]
+kind = "fixed"
+[quasi_static]
+elements = "patches"
+[structure.anchor]
+kind = "anchor"
+points = [[0.5, 1], [0.5, 0.2]]
+spacing = 1
+axial_stiffness = 1e7
+tensile_capacity = 1e6
+free_length = 0.4
+prestress = 5000
+diameter = 0.1
+bond_adhesion = 6e4
+bond_friction_angle = 20
+[output]
+interval = 0
+history_interval = 0.02
+[[stage]]
+kind = "quasi_static"
+duration = 1
+[[stage]]
+kind = "quasi_static"
+duration = 1
+add = "anchor"
+[[stage]]
+name = "on"
+duration = 0.2
+)");
+  const std::vector<double> force = solved.history.column("anchor_head_force_N"),
+                            time = solved.history.column("time_s");
+  for (size_t k = 0; k < time.size(); ++k)
+    if (time[k] > 2) EXPECT_NEAR(force[k] / 5000, 1, 1e-3) << time[k];
+  EXPECT_GT(time.back(), 2.1);
+}
+
 /// A run that goes on from its checkpoint is the run that was not interrupted, to the bit.
 TEST(BarsInMotion, resumed_runs_keep_what_slipped) {
   TemporaryFolder folder;
