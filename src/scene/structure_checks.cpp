@@ -19,7 +19,7 @@ class OneStructure {
   void all() {
     name();
     std::visit([&](auto &kind) { line(kind.points), widths(kind); }, source_.kind);
-    bond(), free_length(), prestress(), stages();
+    bond(), free_length(), prestress(), contact(), stages();
   }
 
  private:
@@ -98,6 +98,12 @@ class OneStructure {
     if (std::ranges::none_of(scene_.stage, [&](const Stage &s) { return s.adds(source_.name); }))
       complain("prestress",
                "is that of the stage that installs the anchor: let a stage add it, add = [\"" + source_.name + "\"]");
+  }
+
+  void contact() const {
+    if (!scene_.contact.empty())
+      reader_.complain("contact." + scene_.contact[0].name,
+                       "cannot be combined with " + path_ + ": its points do not know to which group they belong");
   }
 
   void stages() const {
