@@ -13,7 +13,6 @@
 #include "scene/scene.h"
 #include "scene/stage.h"
 #include "scene/structure_source.h"
-#include "scene/structure_source.h"
 #include "scene/words.h"
 #include "simulation/dynamics.h"
 
@@ -88,8 +87,6 @@ void check_scope(const Scene &scene, bool host) {
     scene.complain("structure." + source.name, "cannot act" + beside + ": it is tied to the soil of one group");
   for (const RigidSource &source : scene.rigid)
     scene.complain("rigid." + source.name, "cannot act" + beside + ": a node meets one of them, a body or a group");
-  for (const StructureSource &source : scene.structure)
-    scene.complain("structure." + source.name, "cannot act" + beside + ": it is bonded to the ground of one group");
 }
 
 }  // namespace
