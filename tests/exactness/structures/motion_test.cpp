@@ -138,7 +138,9 @@ duration = 0.2
   const std::vector<double> force = solved.history.column("anchor_head_force_N"),
                             time = solved.history.column("time_s");
   for (size_t k = 0; k < time.size(); ++k)
-    if (time[k] > 2) EXPECT_NEAR(force[k] / 5000, 1, 1e-3) << time[k];
+    if (time[k] > 2) {
+      EXPECT_NEAR(force[k] / 5000, 1, 1e-3) << time[k];
+    }
   EXPECT_GT(time.back(), 2.1);
 }
 
