@@ -62,6 +62,13 @@ FrictionalPoint strength_of_trial(const FrictionalPoint &own, double factor, Tri
   return {beta * divided.cohesion, reduced, reduced};
 }
 
+bool may_crack(const Law &law) {
+  return law.visit([](const auto &one) {
+    using OneLaw = std::decay_t<decltype(one)>;
+    return std::derived_from<OneLaw, MohrCoulomb> || std::same_as<OneLaw, HoekBrown>;
+  });
+}
+
 template <int dim>
 TrialStrength<dim>::TrialStrength(SoilElements<dim> &soil, BaseContact<dim> &bases, StructuresInSoil<dim> &structures,
                                   const std::vector<Law> &laws)

@@ -22,6 +22,8 @@ FrictionalPoint strength_of_trial(const FrictionalPoint &own, double factor, Tri
 bool non_associated(const Law &law);
 /// Has soil of this law an energy, and with it a tangent that is symmetric and positive?
 bool has_energy(const Law &law);
+/// Does it know a tension cut-off, without which no crack opens?
+bool may_crack(const Law &law);
 
 /// While it exists the soil has the strength of trials: each point that which its place and its plastic strain left it,
 /// divided by the factor of the trial or by a number of its own, and so have the bases. Trials do not soften soil. What

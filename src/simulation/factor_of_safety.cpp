@@ -16,6 +16,7 @@
 #include "scene/water_source.h"
 #include "simulation/factor_document.h"
 #include "simulation/search_region.h"
+#include "solvers/quasi_static/trial_strength.h"
 
 namespace talus {
 
@@ -57,6 +58,11 @@ void check_strength(const World<dim> &world) {
       world.scene.complain("body." + world.scene.body[b].name + ".law",
                            "must have a strength that a factor of safety can divide, but " + law + " " + reason +
                                "; take mohr_coulomb, drucker_prager or hoek_brown");
+    if (!world.scene.factor_of_safety->tension_crack.empty() && frictional_strength(world.laws[b]) &&
+        !may_crack(world.laws[b]))
+      world.scene.complain("body." + world.scene.body[b].name + ".law",
+                           "must know a tension cut-off beside factor_of_safety.tension_crack, and " + law +
+                               " does not; take mohr_coulomb or hoek_brown");
   }
 }
 

@@ -91,6 +91,8 @@ TEST(TensionCrack, is_refused_where_its_line_is_none) {
   };
   EXPECT_NE(complaint({"factor_of_safety.crack_water=3"}).find("has no effect without the line"), std::string::npos);
   EXPECT_NE(complaint({"factor_of_safety.tension_crack=[[1,0.25],[0,0.25]]"}).find("whose x rises"), std::string::npos);
+  const Keys cone = soil + Keys{"body.soil.law=drucker_prager"};
+  EXPECT_NE(complaint(cone + crack_with(5e3)).find("must know a tension cut-off"), std::string::npos);
 }
 
 }  // namespace

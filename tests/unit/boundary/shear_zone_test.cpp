@@ -45,7 +45,7 @@ struct Slab {
       v[i] = {along, -pressing * area[i] * length / soil.grid.mass[i]}, u[i] = {along * length, 0};
     }
     soil.conditions.resolve(0, length, soil.grid, v.data());
-    soil.conditions.add_work(u.data());
+    soil.conditions.add_work(soil.grid, u.data());
     return report().friction;
   }
   RigidBases<2>::Report report() {
