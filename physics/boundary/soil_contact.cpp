@@ -15,7 +15,8 @@ constexpr int smoothing_passes = 4;
 constexpr double stiff = 1e-6;     // mobility of nodes that cannot give way, over that of their masses
 constexpr double open_area = 0.1;  // added to the area over which a gap is spread, in units of the cell's face
 constexpr double touching =
-    0.5;  // gap below which groups touch at the start, in units of the cell size: ends read open
+    0.5;                      // gap below which groups touch at the start, in units of the cell size: ends read open
+constexpr double shut = 0.1;  // gap below which adhesion acts between steps that press, in units of the cell's face
 /// Weight of a node beside its neighbours, each of which counts once for each cell that has both.
 template <int dim>
 constexpr double own_weight = dim == 2 ? 2 : 5;
@@ -279,7 +280,8 @@ void SoilContact<dim>::resolve(Contact &c, const Step &step, Vec<dim> *v) {
                  slope = std::tan(source.friction_angle(x[0], x[1], z, step.t)),
                  capacity = c.memory.capacity + slope * std::max(0., pressed);
     most = share * capacity;
-    if (c.memory.adheres(c.presses || c.hangs, step.gamma, delay))
+    const bool touches = c.presses || c.hangs || gap <= shut * std::pow(c.area, 1. / (dim - 1));
+    if (c.memory.adheres(touches, step.gamma, delay))
       most += source.adhesion(x[0], x[1], z, step.t) * c.area * step.gamma;
     const bool gathers = c.memory.gathers(delay);
     c.memory.pass(step.gamma, c.presses || c.hangs, gathers ? capacity : (1 - share) * capacity);

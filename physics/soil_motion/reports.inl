@@ -32,8 +32,9 @@ bool SoilMotion<dim, Phases>::find_trouble(Vec<dim> *where, std::string *cause) 
   }
   const SoilContact<dim> *contact = conditions_.soil_contact();
   if (!contact || !contact->find_crowded(where)) return false;
-  *cause = "three contact groups meet in one cell, and contact acts between two; give two of them one contact_group, or "
-           "keep them a cell apart, by finer cells";
+  *cause =
+      "three contact groups meet in one cell, and contact acts between two; give two of them one contact_group, or "
+      "keep them a cell apart, by finer cells";
   return true;
 }
 

@@ -429,7 +429,7 @@ PetscErrorCode reduce_strength(QuasiStatic<dim> &problem, const std::vector<Law>
   if (settings.flow) strength.take_undrained(undrained_strength(problem.soil(), *settings.flow, laws));
   for (size_t b = 0; b < settings.kept.size(); ++b)
     if (settings.kept[b]) strength.keep(b);
-  if (settings.crack) strength.crack(settings.crack);
+  if (settings.crack) settings.tell_cracked(strength.crack(settings.crack));
   if (settings.divided) settings.tell_confined(strength.confine(settings.divided));
   const PathWork work = problem.work();  // trials do none
   PetscCall(MechanismSearch<dim>(problem, strength, settings, result).run(interrupted));

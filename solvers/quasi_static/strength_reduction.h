@@ -53,6 +53,7 @@ struct ReductionSettings {
   std::function<bool(const Vec<dim> &, double)> divided;
   /// Pressure of water in a crack at this place [Pa], negative where no crack reaches. Empty: there are none.
   std::function<double(const Vec<dim> &)> crack;
+  std::function<void(bool any)> tell_cracked;       ///< before the trials, if `crack`: does any soil lie there?
   std::function<void(double share)> tell_confined;  ///< before the trials, if `divided`: in which share of the soil
   std::function<void(const StrengthTrial &)> tell;  ///< after each trial
   /// A search found the shoulder of a mechanism, counted from 1: a share of its shear follows the soil that is held.

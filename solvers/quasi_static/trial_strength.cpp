@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "physics/laws/laws.h"
 #include "solvers/quasi_static/undrained_strength.h"
@@ -69,6 +70,18 @@ bool may_crack(const Law &law) {
   });
 }
 
+/// Of a point whose shear strength is c and phi [Pa]. Where friction hardly limits it, a hundred times the cohesion
+/// stands for a tension that no slope reaches. That of rock is so small that none is left to it.
+static double tensile_strength(const Law &law, const FrictionalPoint &p) {
+  if (law.as<HoekBrown>()) return 0;
+  const double apex = std::min(100 * p.c, p.phi > 0 ? p.c / std::tan(p.phi) : std::numeric_limits<double>::infinity());
+  return law.visit([&](const auto &one) {
+    if constexpr (std::derived_from<std::decay_t<decltype(one)>, MohrCoulomb>)
+      if (one.tension_cutoff >= 0) return std::min(apex, one.tension_cutoff);
+    return apex;
+  });
+}
+
 template <int dim>
 TrialStrength<dim>::TrialStrength(SoilElements<dim> &soil, BaseContact<dim> &bases, StructuresInSoil<dim> &structures,
                                   const std::vector<Law> &laws)
@@ -125,9 +138,12 @@ void TrialStrength<dim>::restore() {
   }
 }
 
-/// The water of a crack bears a part of the stress at its points: the law sees no tension beyond its pressure.
+/// The water of a crack bears a part of the stress at its points: the law sees no tension beyond its pressure. Below
+/// the line water in tension bears the soil's own tensile strength, and `set` takes from the cohesion what friction
+/// gains by it: the same Mohr-Coulomb soil, with its apex as its cut-off.
 template <int dim>
-void TrialStrength<dim>::crack(const std::function<double(const Vec<dim> &)> &water) {
+bool TrialStrength<dim>::crack(const std::function<double(const Vec<dim> &)> &water) {
+  bool any = false;
   for (size_t b = 0; b < bodies_.size(); ++b) {
     GaussPoints<dim> &p = soil_.points()[b];
     OfBody &body = bodies_[b];
@@ -135,16 +151,20 @@ void TrialStrength<dim>::crack(const std::function<double(const Vec<dim> &)> &wa
     for (int q = 0; p.present && q < p.count(); ++q) reached = reached || water(p.position[q]) >= 0;
     MPI_Allreduce(MPI_IN_PLACE, &reached, 1, MPI_INT, MPI_MAX, soil_.nodes().comm());
     if (!reached || never_fails(laws_[b])) continue;
-    body.cracks = true, body.history = p.history;
+    any = body.cracks = true, body.history = p.history;
     const size_t own = history_size(p.law) - (p.law.holds_water() ? 1 : 0), was = history_size(p.law);
     std::vector<double> history;
     for (int q = 0; q < p.count(); ++q) {
       for (size_t k = 0; k < own; ++k) history.push_back(p.history[q * was + k]);
-      history.push_back(std::max(0., water(p.position[q])));
+      const double pressure = water(p.position[q]);
+      const auto &strength = body.own.empty() ? body.undrained : body.own;
+      body.tension.push_back(pressure < 0 ? tensile_strength(laws_[b], strength[q]) : 0);
+      history.push_back(pressure < 0 ? -body.tension.back() : pressure);
     }
     p.history = p.trial_history = history;
     p.law = p.law.holding_water(0);
   }
+  return any;
 }
 
 template <int dim>
@@ -222,7 +242,8 @@ void TrialStrength<dim>::set(double factor, TrialFlow flow) {
     const auto share = [](double part, double of) { return of > 0 ? part / of : 1; };
     p.cohesion_share.resize(p.count()), p.friction_share.resize(p.count());
     for (int q = 0; q < p.count(); ++q) {
-      const FrictionalPoint now = strength_of_trial(body.own[q], divisor(q), flow);
+      FrictionalPoint now = strength_of_trial(body.own[q], divisor(q), flow);
+      if (body.cracks) now.c = std::max(0., now.c - body.tension[q] * std::tan(now.phi));
       p.cohesion_share[q] = share(now.c, whole ? whole->cohesion : body.own[q].c);
       p.friction_share[q] = whole ? share(now.phi, whole->friction_angle) : 1;
     }

@@ -43,10 +43,10 @@ class TrialStrength {
   /// Strength is divided by the factor of the trial only where `divided(place, element size)`; elsewhere it is the
   /// soil's own. Returns the share of the soil where it is divided. Collective.
   double confine(const std::function<bool(const Vec<dim> &, double)> &divided);
-  /// Lets soil above a line crack: bodies of which a part lies there bear no tension, and at a place with a crack no
-  /// less than `water`(place), the pressure of the water in it; negative where there is none. Undone by `restore`.
-  /// Collective.
-  void crack(const std::function<double(const Vec<dim> &)> &water);
+  /// Lets soil above a line crack: there it bears no tension, and no less than `water`(place), the pressure of the
+  /// water in the crack; negative where no crack reaches. Rock bears no tension in all of a body of which a part lies
+  /// there. Undone by `restore`. False: no soil that fails lies above the line. Collective.
+  bool crack(const std::function<double(const Vec<dim> &)> &water);
   /// Strength of these cells, and of the bases under them, is divided by `divisor` in all trials from now on.
   /// Collective.
   PetscErrorCode hold(const CellSet &cells, double divisor);
@@ -61,12 +61,13 @@ class TrialStrength {
     std::vector<FrictionalPoint> own;        ///< of points; none where the law has no such strength
     std::vector<FrictionalPoint> undrained;  ///< likewise, without flow of the pore water: in `undrained` trials, and
                                              ///< in all of soil that holds its water
-    std::vector<double> divisor;  ///< of points; 0: that of the trial
-    double psi = 0;               ///< mean of its points, by volume [rad]
-    bool kept = false;            ///< no trial divides its strength
-    bool cracks = false;          ///< it bears no tension, and holds the water of its cracks
-    std::vector<double> history;  ///< without that water
-    Law law;                      ///< with which the points came, and their shares
+    std::vector<double> divisor;             ///< of points; 0: that of the trial
+    double psi = 0;                          ///< mean of its points, by volume [rad]
+    bool kept = false;                       ///< no trial divides its strength
+    bool cracks = false;                     ///< it cracks, and holds the water of its cracks
+    std::vector<double> tension;             ///< if it cracks, of points: what the soil below the cracks bears [Pa]
+    std::vector<double> history;             ///< without that water
+    Law law;                                 ///< with which the points came, and their shares
     std::vector<double> cohesion_share, friction_share;
   };
   SoilElements<dim> &soil_;

@@ -29,10 +29,10 @@ struct FactorSource {
         "line of points [x, elevation] along which soil may slip: strength is divided in a band on it, elsewhere soil "
         "keeps its strength; in 3D across its whole width");
     v.number("width", width, metre, Range{0, 1e5}, "width of the band on the line `along`; 0: two cells");
-    v.points(
-        "tension_crack", tension_crack, metre,
-        "line of points [x, elevation]: bodies with soil above it bear no tension, so that cracks reach down to it; "
-        "between its ends; in 3D across the whole width");
+    v.points("tension_crack", tension_crack, metre,
+             "line of points [x, elevation] down to which cracks reach: soil above it bears no tension; between its "
+             "ends; in "
+             "3D across the whole width");
     v.number(
         "crack_water", crack_water, metre, Range{no_water, 1e5},
         "elevation to which water stands in the cracks above the line tension_crack; its pressure pushes the soil on "

@@ -336,8 +336,12 @@ FactorOfSafety FactorStage<dim>::search() {
     settings.crack = [&crack, weight, vertical = run_.scene.vertical()](const Vec<dim> &x) {
       return crack.reaches(x[0], x[vertical]) ? weight * crack.head(x[vertical]) : -1;
     };
-    run_.recorder.note(std::string("soil above factor_of_safety.tension_crack cracks: its bodies bear no tension") +
-                       (crack.wet() ? ", and water stands in the cracks" : ""));
+    settings.tell_cracked = [&](bool any) {
+      if (!any)
+        run_.scene.complain("factor_of_safety.tension_crack", "must have soil above it that fails; it has none");
+      run_.recorder.note(std::string("soil above factor_of_safety.tension_crack bears no tension") +
+                         (crack.wet() ? ", and water stands in its cracks" : ""));
+    };
   }
   settings.tell_confined = [&](double share) {
     if (share == 0)
@@ -416,9 +420,11 @@ void FactorStage<dim>::report(const FactorOfSafety &found) {
   });
   for (const std::string &stage : found.lost_stages)
     run_.recorder.note("stage " + stage + " found no equilibrium" +
-                       (found.lower < 1 ? ": the soil does not stand with its own strength"
-                                        : " by its load steps, though the soil stands: displacement and stress of that "
-                                          "stage are not those of this soil. The factor does not need them"));
+                       (found.lower < 1
+                            ? ": the soil does not stand with its own strength"
+                            : " by its load steps, though the soil stands at the end of all stages: "
+                              "displacement and stress of that stage are not those of this soil. This factor "
+                              "does not need them; that of the stage itself needs a scene that ends there"));
   if (const std::string name = results(); !name.empty()) replace_file(name + ".json", document_of(found));
 }
 

@@ -144,7 +144,7 @@ Json units() {
     for (const Describer::Key &key : block.keys)
       if (!key.unit.empty() || key.over_time)
         keys[key.path.substr(key.path.rfind('.') + 1)] = {{"unit", key.unit}, {"over_time", key.over_time}};
-    tables[block.path][block.kind] = keys;
+    tables[block.path][block.kind].update(keys);  // the drainage of a soil is a block of its own
   }
   return tables;
 }

@@ -45,7 +45,7 @@ void Simulation<dim>::run() {
 
 template <int dim>
 FactorOfSafety Simulation<dim>::factor_of_safety() {
-  if (run_.clock.steps == 0) run();
+  if (run_.progress.number < 0) run();
   if (run_.factors.empty())
     throw RunError("the scene has no stage of kind = \"factor_of_safety\" that was carried out");
   return run_.factors.back();

@@ -85,6 +85,8 @@ void check_drainage(const Scene &scene, const BodySource &body) {
     scene.complain(path + ".drainage",
                    "must be \"drained\" where pore fluids move: there permeability and time decide what drains; take "
                    "phases = \"drained\", or give the soil a low permeability");
+  if (drainage.skempton_b > 0 && drainage.undrained_poisson_ratio != Drainage().undrained_poisson_ratio)
+    scene.complain(path + ".skempton_b", "must be left out beside undrained_poisson_ratio, or that beside it");
   std::vector<std::string> static_stages;
   for (const Stage &stage : scene.stage)
     if (stage.settles_soil() && !stage.finds_factor()) static_stages.push_back(stage.name);

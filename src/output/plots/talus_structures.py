@@ -80,6 +80,7 @@ def rows(results):
             continue
         use, slip, slipping = (columns[f"{name}_{what}"] for what in ("utilisation", "bond_slip_m", "slipping"))
         most = int(np.argmax(np.abs(force)))
-        found.append([words(name), kind, brief(force[-1], "N"), f"{brief(force[most], 'N')} ({results.history.stage[most]})", f"{100 * use[-1]:.0f} %",
+        unit = "N/m" if kind == "geogrid" else "N"
+        found.append([words(name), kind, brief(force[-1], unit), f"{brief(force[most], unit)} ({results.history.stage[most]})", f"{100 * use[-1]:.0f} %",
                       f"{100 * slipping[-1]:.0f} %", brief(slip[-1], "m")])
     return [["structure", "kind", "force at the end", "largest force (stage)", "utilisation", "bond that slips", "largest slip"]] + found if found else []

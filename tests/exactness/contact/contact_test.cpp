@@ -166,7 +166,7 @@ TEST_F(Contact, a_block_slides_with_its_friction_and_sticks_below_it) {
   const Result sticks = run(sliding_scene(head(on_slope(15)), held_first, settled(0.4)));
   EXPECT_NEAR(sticks.value("middle_velocity_m_s"), 0, 0.01);
   EXPECT_NEAR(sticks.value("joint_friction"), std::tan(std::acos(-1.) / 12), 0.02) << "as much as holds it";
-  const Result adheres = run(sliding_scene(head(on_slope(15)), "friction_angle = 0\nadhesion = 3000", settled(0.4)));
+  const Result adheres = run(sliding_scene(head(on_slope(15)), "friction_angle = 0\nadhesion = 1250", settled(0.4)));
   EXPECT_NEAR(adheres.value("middle_velocity_m_s"), 0, 0.02);
 }
 

@@ -272,6 +272,21 @@ TEST(Block, has_no_factor_where_soil_that_softens_loses_its_equilibrium) {
   expect_holds(peak, 28. / 30);
 }
 
+/// A run whose stages end without a step is not run again by the question for its factor, whose folder is in use.
+TEST(Block, is_asked_for_its_factor_after_a_run_without_steps) {
+  TemporaryFolder folder;
+  ASSERT_TRUE(folder.make());
+  Scene scene = parse_scene(block, std::string(TALUS_MESHES) + "/scene.toml",
+                            {"boundary.surface.pressure=30e3", "stage.load.load_steps=1",
+                             "quasi_static.smallest_step=1", "stage.load.softening=false"});
+  scene.add_factor_stage();
+  RunOptions options;
+  options.pictures = options.screen = options.checkpoints = false, options.directory = folder.path() + "/run";
+  const auto simulation = make_simulation(PETSC_COMM_WORLD, scene, options);
+  simulation->run();
+  expect_holds(simulation->factor_of_safety(), 28. / 30);
+}
+
 /// Where the strength is too small for the loads a trial says so after the second step that failed, and the smallest
 /// steps are not tried: the stage ends far above them. The factor is that of the block.
 TEST(Block, fails_before_small_steps_are_tried) {

@@ -59,7 +59,18 @@ TEST(TensionCrack, bears_no_tension) {
   const Keys pull{"boundary.right.pressure=-10e3"};
   expect_factor(search(pull).factor, 0.7);
   EXPECT_ANY_THROW(search(pull + Keys{"factor_of_safety.tension_crack=[[0,-1],[1,-1]]"}));
-  expect_factor(search(pull + Keys{"factor_of_safety.tension_crack=[[0,2],[1,2]]"}).factor, 0.7);  // above the soil
+}
+
+/// Below the line soil keeps its tensile strength, with friction and without: where the foot of the block is pulled and
+/// its head is pressed, cracks in the head change nothing, and cracks in all of it leave no factor.
+TEST(TensionCrack, ends_at_its_line) {
+  for (const char *phi : {"0", "20"}) {
+    const Keys bent{"boundary.right.pressure=20e3*(y-0.5)", std::string("body.soil.friction_angle=") + phi};
+    const FactorOfSafety whole = search(bent).factor;
+    const FactorOfSafety head = search(bent + Keys{"factor_of_safety.tension_crack=[[0,0.7],[1,0.7]]"}).factor;
+    EXPECT_NEAR(head.lower, whole.lower, 0.02 * whole.lower) << phi;
+    EXPECT_ANY_THROW(search(bent + crack_with(0))) << phi;
+  }
 }
 
 /// Rock of Hoek and Brown too, and soil that holds its water.
@@ -91,6 +102,8 @@ TEST(TensionCrack, is_refused_where_its_line_is_none) {
   };
   EXPECT_NE(complaint({"factor_of_safety.crack_water=3"}).find("has no effect without the line"), std::string::npos);
   EXPECT_NE(complaint({"factor_of_safety.tension_crack=[[1,0.25],[0,0.25]]"}).find("whose x rises"), std::string::npos);
+  EXPECT_NE(complaint({"factor_of_safety.tension_crack=[[0,2],[1,2]]"}).find("must have soil above it"),
+            std::string::npos);
   const Keys cone = soil + Keys{"body.soil.law=drucker_prager"};
   EXPECT_NE(complaint(cone + crack_with(5e3)).find("must know a tension cut-off"), std::string::npos);
 }

