@@ -196,8 +196,8 @@ TEST(Ranks, column_of_wet_sand_is_the_same) {
 TEST(Ranks, column_of_wet_sand_is_the_same_with_implicit_pressure) {
   expect_the_same(wet_column, {"mesh.size=0.01", "water.pressure=implicit", "water.bulk_modulus=2.2e9"}, 1e-4);
 }
-/// A round of Newton's method more or less, where pores become full, leaves another residual too: 9e-3 on four ranks, and within
-/// 1e-3 with a thousandth of the residual.
+/// A round of Newton's method more or less, where pores become full, leaves another residual too: 9e-3 on four ranks,
+/// and within 1e-3 with a thousandth of the residual.
 TEST(Ranks, column_of_moist_sand_in_rain_is_the_same_with_implicit_pressure) {
   expect_the_same(wet_column,
                   {"mesh.size=0.01", "phases=unsaturated", "body.sand.retention.curve=van_genuchten",
